@@ -45,30 +45,39 @@ int floor_of(const CommonOptions& options, laboratory::KnownPhysicsRequest reque
   return run_step(options, [&](const auto& context) { return laboratory::cut_by_known_physics(request, context); });
 }
 
-int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
-  const std::filesystem::path root = options.required_output("acceptance");
+/// Work that goes on in its folder where it was interrupted. @param work  (folder, context, workers, console) → JSON
+template <class Work>
+nlohmann::ordered_json run_in_folder(const CommonOptions& options, const char* example, Work work) {
+  const std::filesystem::path root = options.required_output(example);
   std::filesystem::create_directories(root);
-  nlohmann::ordered_json result;
   try {
     Console console(options.level());
     Workers workers(options.threads);
-    result = accept_bench(settings, root, options.context(), workers, console);
+    return work(root, options.context(), workers, console);
   } catch (const Cancelled& error) {
     throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
   }
+}
+
+std::string two_decimals(const nlohmann::ordered_json& value) {
+  return value.is_number() ? fmt::format("{:.2f}", value.get<double>()) : std::string("-");
+}
+
+int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
+  const nlohmann::ordered_json result =
+      run_in_folder(options, "acceptance", [&](const auto& root, const auto& context, auto& workers, auto& console) {
+        return accept_bench(settings, root, context, workers, console);
+      });
   if (options.json) {
     print_result(options, result);
     return kDone;
   }
   fmt::print("VIRTUAL specimens, mean |error| of the photographs, mm\n{:>6} {:>10} {:>8} {:>12}\n", "seed", "planned",
              "paper's", "mm/s");
-  const auto shown = [](const nlohmann::ordered_json& value) {
-    return value.is_number() ? fmt::format("{:.2f}", value.get<double>()) : std::string("-");
-  };
   for (const auto& row : result.at("rows")) {
     const auto& asked = row.at("prescription");
-    fmt::print("{:>6} {:>10} {:>8} {:>12}\n", row.at("seed").get<std::uint64_t>(), shown(row.at("planned_mm")),
-               shown(row.at("paper_pass_mm")), asked.is_object() ? shown(asked.at("speed_mm_s")) : "-");
+    fmt::print("{:>6} {:>10} {:>8} {:>12}\n", row.at("seed").get<std::uint64_t>(), two_decimals(row.at("planned_mm")),
+               two_decimals(row.at("paper_pass_mm")), asked.is_object() ? two_decimals(asked.at("speed_mm_s")) : "-");
   }
   nlohmann::ordered_json summary = result.at("summary");
   print_result(options, summary);
@@ -76,25 +85,18 @@ int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
 }
 
 int screen(const CommonOptions& options, const ScreeningSettings& settings) {
-  const std::filesystem::path root = options.required_output("factors");
-  std::filesystem::create_directories(root);
-  nlohmann::ordered_json result;
-  try {
-    Console console(options.level());
-    Workers workers(options.threads);
-    result = screen_factors(settings, root, options.context(), workers, console);
-  } catch (const Cancelled& error) {
-    throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
-  }
+  const nlohmann::ordered_json result =
+      run_in_folder(options, "factors", [&](const auto& root, const auto& context, auto& workers, auto& console) {
+        return screen_factors(settings, root, context, workers, console);
+      });
   if (options.json) {
     print_result(options, result);
     return kDone;
   }
-  const auto shown = [](const nlohmann::ordered_json& value) {
-    return value.is_number() ? fmt::format("{:.2f}", value.get<double>()) : std::string("-");
-  };
   const auto moved = [&](const char* name, const nlohmann::ordered_json& parts) {
-    const auto part = [&](const char* key) { return parts.is_object() ? shown(parts.at(key)) : std::string("-"); };
+    const auto part = [&](const char* key) {
+      return parts.is_object() ? two_decimals(parts.at(key)) : std::string("-");
+    };
     fmt::print("{:<14} {:>6} {:>6} {:>6}", name, part("level_mm"), part("shift_mm"), part("rest_mm"));
   };
   fmt::print(
@@ -104,11 +106,12 @@ int screen(const CommonOptions& options, const ScreeningSettings& settings) {
   for (const auto& factor : result.at("factors")) {
     const auto& ends = factor.at("change_95_mm");
     moved(factor.at("factor").get<std::string>().c_str(), factor.at("moved"));
-    fmt::print(" {:>24} {:>8}/{}\n",
-               fmt::format("{} ({} to {})", shown(factor.at("change_mm")), shown(ends.is_array() ? ends[0] : ends),
-                           shown(ends.is_array() ? ends[1] : ends)),
-               fmt::format("{} of {}", factor.at("measured_with").dump(), factor.at("made_with").dump()),
-               fmt::format("{} of {}", factor.at("measured_without").dump(), factor.at("made_without").dump()));
+    fmt::print(
+        " {:>24} {:>8}/{}\n",
+        fmt::format("{} ({} to {})", two_decimals(factor.at("change_mm")),
+                    two_decimals(ends.is_array() ? ends[0] : ends), two_decimals(ends.is_array() ? ends[1] : ends)),
+        fmt::format("{} of {}", factor.at("measured_with").dump(), factor.at("made_with").dump()),
+        fmt::format("{} of {}", factor.at("measured_without").dump(), factor.at("made_without").dump()));
   }
   moved("by chance", result.at("chance"));
   fmt::print("\n");
@@ -236,7 +239,7 @@ void add_bench(Application& application) {
       [screened](second_bench::Factors factors) {
         if (factors.size() < 2)
           throw CaseError("command line", "--factors", fmt::format("{} of them", factors.size()),
-                          "at least two, or what is chance is not known");
+                          "at least two: with one, chance is not known");
         screened->factors = std::move(factors);
       });
   add_overrides(*verb, screened->overrides);

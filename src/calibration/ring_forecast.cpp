@@ -288,7 +288,37 @@ struct RingForecaster::Posterior {
       cross.middleCols<kWaves>(static_cast<Eigen::Index>(s) * kWaves) = common.between(place, places[s]);
     return cross;
   }
+  /// What is expected of one more photograph less its simulation, slow waves, and their covariance.
+  struct Expected {
+    SlowWaves mean = SlowWaves::Zero();
+    WaveMatrix covariance = WaveMatrix::Zero();
+  };
+  [[nodiscard]] Expected expect(const RingPlace& place, std::size_t count) const {
+    const CommonCovariance common(spreads, count);
+    Expected expected;
+    expected.covariance = common.between(place, place);
+    expected.covariance.diagonal() += own_variances(spreads, count);
+    if (places.empty()) return expected;
+    const Eigen::MatrixXd cross = cross_to(place, common);
+    expected.mean = cross * weights;
+    expected.covariance -= cross * factor.solve(cross.transpose());
+    return expected;
+  }
+  /// Covariance between sectors of slow waves and of the fast ones, which are not forecast.
+  [[nodiscard]] Eigen::MatrixXd between_sectors(const WaveMatrix& covariance, std::size_t count) const {
+    const auto rows = static_cast<Eigen::Index>(count);
+    Eigen::MatrixXd basis(rows, kWaves);
+    for (Eigen::Index k = 0; k < kWaves; ++k) {
+      const std::vector<double> wave = profile_of(SlowWaves::Unit(k), count);
+      basis.col(k) = Eigen::Map<const Eigen::VectorXd>(wave.data(), rows);
+    }
+    Eigen::MatrixXd sectors_covariance = basis * covariance * basis.transpose();
+    sectors_covariance.diagonal().array() += fast_mm * fast_mm;
+    return sectors_covariance;
+  }
+  /// Empty without observations.
   [[nodiscard]] std::vector<std::string_view> unlike(const RingCovariates& ring) const {
+    if (observations.empty()) return {};
     std::vector<RingCovariates> rings;
     for (const RingObservation& one : observations) rings.push_back(one.ring);
     std::vector<std::string_view> names;
@@ -361,34 +391,22 @@ bool RingForecaster::is_converged() const {
 
 RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t sectors) const {
   const Posterior& p = *posterior_;
-  RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 : 0.0, .share_sd = p.spreads.share};
+  RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0, .share_sd = p.spreads.share};
   const std::size_t count = p.places.empty() ? sectors : p.sectors;
-  const CommonCovariance common(p.spreads, count);
-  const RingPlace place = p.place_of(ring);
-  WaveMatrix variance = common.between(place, place);
-  variance.diagonal() += own_variances(p.spreads, count);
-  SlowWaves mean = SlowWaves::Zero();
+  // Taken for an average simulated ring: what differs is said by the share.
+  const Posterior::Expected expected = p.expect(p.place_of(ring), count);
   if (!p.places.empty()) {
-    const auto n = static_cast<Eigen::Index>(p.places.size());
-    const Eigen::MatrixXd cross = p.cross_to(place, common);
-    const double share = p.share(), prior = p.spreads.share * p.spreads.share;
-    Eigen::VectorXd differences(n * kWaves);
-    for (Eigen::Index s = 0; s < n; ++s)
-      differences.segment<kWaves>(s * kWaves) = p.places[static_cast<std::size_t>(s)].simulated;
+    const double prior = p.spreads.share * p.spreads.share;
+    Eigen::VectorXd differences(p.weights.size());
+    for (std::size_t s = 0; s < p.places.size(); ++s)
+      differences.segment<kWaves>(static_cast<Eigen::Index>(s) * kWaves) = p.places[s].simulated;
     forecast.share_sd = std::sqrt(std::max(0.0, prior - prior * prior * differences.dot(p.factor.solve(differences))));
-    mean = cross * p.weights - share * p.simulated_mean;
-    variance -= cross * p.factor.solve(cross.transpose());
-    if (p.has_simulation) forecast.simulated_share += share;
-    forecast.unlike = p.unlike(ring);
   }
-  forecast.residual_mm = profile_of(mean, count);
-  forecast.level_sd_mm = std::sqrt(std::max(0.0, variance(0, 0)) / static_cast<double>(count));
-  for (std::size_t i = 0; i < count; ++i) {
-    std::vector<double> here(count, 0.0);
-    here[i] = 1.0;
-    const SlowWaves at = slow_waves(here);
-    forecast.sd_mm.push_back(std::sqrt(std::max(0.0, at.dot(variance * at)) + p.fast_mm * p.fast_mm));
-  }
+  forecast.unlike = p.unlike(ring);
+  forecast.residual_mm = profile_of(expected.mean - p.share() * p.simulated_mean, count);
+  forecast.level_sd_mm = std::sqrt(std::max(0.0, expected.covariance(0, 0)) / static_cast<double>(count));
+  const Eigen::MatrixXd covariance = p.between_sectors(expected.covariance, count);
+  for (const double variance : covariance.diagonal()) forecast.sd_mm.push_back(std::sqrt(std::max(0.0, variance)));
   return forecast;
 }
 
@@ -400,36 +418,20 @@ RingPrediction RingForecaster::predict(const RingCovariates& ring, const std::ve
                  fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, simulated_mm.size()));
   for (const double value : simulated_mm) INCISE_REQUIRE(std::isfinite(value), "expected finite errors");
   INCISE_REQUIRE(ln_modulus_sd >= 0.0 && std::isfinite(ln_modulus_sd), "expected a spread of 0 or more");
-  const CommonCovariance common(p.spreads, count);
   RingPlace place = p.place_of(ring);
   if (!simulated_mm.empty()) {
     // A wave's entry grows with the root of the number of sectors.
     const double scale = std::sqrt(static_cast<double>(count) / static_cast<double>(simulated_mm.size()));
     place.simulated = scale * slow_waves(simulated_mm) - p.simulated_mean;
   }
-  WaveMatrix variance = common.between(place, place);
-  variance.diagonal() += own_variances(p.spreads, count);
-  variance(0, 0) +=
+  Posterior::Expected expected = p.expect(place, count);
+  expected.covariance(0, 0) +=
       static_cast<double>(count) * std::pow(p.spreads.slope_mm[kModulus] * ln_modulus_sd / kSteps[kModulus], 2);
-  SlowWaves mean = SlowWaves::Zero();
-  RingPrediction prediction{.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0,
-                            .degrees = p.places.size() + kPriorDegrees};
-  if (!p.places.empty()) {
-    const Eigen::MatrixXd cross = p.cross_to(place, common);
-    mean = cross * p.weights;
-    variance -= cross * p.factor.solve(cross.transpose());
-    prediction.unlike = p.unlike(ring);
-  }
-  prediction.residual_mm = profile_of(mean, count);
-  const auto rows = static_cast<Eigen::Index>(count);
-  Eigen::MatrixXd basis(rows, kWaves);
-  for (Eigen::Index k = 0; k < kWaves; ++k) {
-    const std::vector<double> wave = profile_of(SlowWaves::Unit(k), count);
-    basis.col(k) = Eigen::Map<const Eigen::VectorXd>(wave.data(), rows);
-  }
-  prediction.covariance_mm2 = basis * variance * basis.transpose();
-  prediction.covariance_mm2.diagonal().array() += p.fast_mm * p.fast_mm;
-  return prediction;
+  return {.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0,
+          .residual_mm = profile_of(expected.mean, count),
+          .covariance_mm2 = p.between_sectors(expected.covariance, count),
+          .degrees = p.places.size() + kPriorDegrees,
+          .unlike = p.unlike(ring)};
 }
 
 HandEyeEstimate RingForecaster::hand_eye() const {

@@ -66,8 +66,8 @@ std::optional<FactorialFit> fit_factorial(const FractionalFactorial& design,
   const Eigen::MatrixXd inverse = (model.transpose() * model).inverse();
   FactorialFit fit;
   for (Eigen::Index k = 1; k < effects; ++k) fit.factors.push_back({found[k], std::sqrt(variance * inverse(k, k))});
-  fit.differences.resize(responses.size());
-  for (Eigen::Index row = 0; row < rows; ++row) fit.differences[measured[static_cast<std::size_t>(row)]] = rest[row];
+  fit.residuals.resize(responses.size());
+  for (Eigen::Index row = 0; row < rows; ++row) fit.residuals[measured[static_cast<std::size_t>(row)]] = rest[row];
   return fit;
 }
 

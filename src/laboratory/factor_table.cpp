@@ -91,12 +91,12 @@ void count_cuts(const FractionalFactorial& design, const std::vector<Runs>& erro
 /// Mean of what a fit leaves in runs where a group's pairs are alike, less that in the others; absent: it was measured
 /// in none of one kind.
 std::optional<double> contrast_of(const FractionalFactorial& design, const FractionalFactorial::Pair& pair,
-                                  const Responses& differences) {
+                                  const Responses& residuals) {
   double sums[2] = {0.0, 0.0}, counts[2] = {0.0, 0.0};
-  for (std::size_t run = 0; run < differences.size(); ++run) {
-    if (!differences[run]) continue;
+  for (std::size_t run = 0; run < residuals.size(); ++run) {
+    if (!residuals[run]) continue;
     const std::size_t kind = design.is_alike(run, pair) ? 1 : 0;
-    sums[kind] += *differences[run];
+    sums[kind] += *residuals[run];
     counts[kind] += 1.0;
   }
   if (!(counts[0] > 0.0 && counts[1] > 0.0)) return std::nullopt;
@@ -111,7 +111,7 @@ std::vector<PairEffect> pairs_of(const FractionalFactorial& design, std::span<co
   for (const std::vector<FractionalFactorial::Pair>& group : design.pair_groups()) {
     std::vector<double> changes;
     for (const FactorialFit& fit : fits)
-      if (const auto change = contrast_of(design, group.front(), fit.differences)) changes.push_back(*change);
+      if (const auto change = contrast_of(design, group.front(), fit.residuals)) changes.push_back(*change);
     if (changes.empty()) continue;
     const TTest test = paired_t_test(std::vector<double>(changes.size(), 0.0), changes);
     PairEffect one{.change_mm = test.difference, .change_95 = test.confidence};

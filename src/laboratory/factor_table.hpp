@@ -39,7 +39,7 @@ struct FactorEffect {
 };
 void describe(Visitor& v, FactorEffect& e);
 
-/// What pairs of factors do together that the design does not tell apart.
+/// The sum of the interactions of pairs that the design aliases.
 struct PairEffect {
   std::vector<std::pair<std::string, std::string>> pairs;
   /// Of the mean |error| where both of a pair are on, or both off, beyond the factors' own effects: mean over

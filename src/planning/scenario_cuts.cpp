@@ -51,12 +51,11 @@ ScenarioCuts::Cut ScenarioCuts::along(MovablePath::Moved moved) {
     made.scenarios.push_back(linear(k, *measured[k]));
     weight += made.scenarios.back().weight;
   }
+  if (!made.scenarios.empty()) {
+    const auto still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(course_.waypoints()));
+    made.risk = risk_.of(moved_errors(made.scenarios, still));
+  }
   made.risk.unmeasured_weight = made.scenarios.size() == scenarios_.size() ? 0.0 : 1.0 - weight;
-  if (made.scenarios.empty()) return made;
-  const auto still = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(course_.waypoints()));
-  const double unmeasured = made.risk.unmeasured_weight;
-  made.risk = risk_.of(moved_errors(made.scenarios, still));
-  made.risk.unmeasured_weight = unmeasured;
   return made;
 }
 

@@ -13,16 +13,8 @@ namespace {
 
 using ForecastJson = nlohmann::ordered_json;
 
-double mean_bias_mm(const DragFit& fit) {
-  double mean = 0.0;
-  for (const PosteriorSample& sample : fit.samples) mean += sample.weight * sample.bias_mm;
-  return mean;
-}
-
 /// One of both ways to forecast, and what the case has to say to correct by it.
-ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast& forecast, Monitor& monitor) {
-  if (!forecaster.is_converged())
-    monitor.message(Severity::Warning, "forecast: the search for its spreads was ended before it came to rest");
+ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast& forecast) {
   ForecastJson json = to_json(forecast);
   json["converged"] = forecaster.is_converged();
   json["spreads"] = to_json(forecaster.spreads());
@@ -30,32 +22,24 @@ ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast&
   return json;
 }
 
-ForecastJson without_simulation(const std::vector<RingObservation>& observations, const RingCovariates& ring,
-                                Monitor& monitor) {
-  const RingForecaster forecaster(observations, false);
+ForecastJson without_simulation(const CalibratedBelief& belief, const RingCovariates& ring, Monitor& monitor) {
+  const RingForecaster forecaster(belief.rings, false);
+  warn_unless_converged(forecaster, monitor);
   const RingForecast forecast = forecaster.forecast(ring);
-  ForecastJson json = forecast_json(forecaster, forecast, monitor);
+  ForecastJson json = forecast_json(forecaster, forecast);
   json["compensation"] = {{"method", "profile"}, {"photographed_mm", forecast.residual_mm}};
   return json;
 }
 
-ForecastJson with_simulation(const std::filesystem::path& file, const std::vector<RingObservation>& observations,
-                             const RingCovariates& ring, double bias_mm, Monitor& monitor) {
-  const RingForecaster forecaster(observations, true);
+ForecastJson with_simulation(const CalibratedBelief& belief, const RingCovariates& ring, Monitor& monitor) {
+  const RingForecaster forecaster(belief.rings, true);
+  warn_unless_converged(forecaster, monitor);
   const RingForecast forecast = forecaster.forecast(ring);
-  const double share = forecast.simulated_share;
-  if (!contains(kUsableShare, share))
-    throw DataError(file, "fitted", fmt::format("photographs that differ by {:.2f} of what simulations do", share),
-                    fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
-                    "The simulation says nothing of these specimens");
-  if (!contains(kLikelyShare, share))
-    monitor.message(
-        Severity::Warning,
-        fmt::format("photographs differ by {:.2f} of what the simulations do: the simulation misleads", share));
-  ForecastJson json = forecast_json(forecaster, forecast, monitor);
+  require_usable_share(belief.file, forecast.simulated_share, monitor);
+  ForecastJson json = forecast_json(forecaster, forecast);
   json["compensation"] = {{"observable", "inner_edge"},
-                          {"bias_mm", bias_mm},
-                          {"simulated_share", share},
+                          {"bias_mm", tissue_scenarios(belief.samples, 0.0).front().bias_mm},
+                          {"simulated_share", forecast.simulated_share},
                           {"residual_mm", forecast.residual_mm}};
   return json;
 }
@@ -65,7 +49,6 @@ ForecastJson with_simulation(const std::filesystem::path& file, const std::vecto
 StepResult forecast_case(const CaseRequest& request, const std::filesystem::path& calibration,
                          const StepContext& context) {
   const CalibrationInput input = read_calibration_input({calibration, std::nullopt});
-  const std::vector<RingObservation>& observations = input.belief.rings;
   if (request.file.settings.plan.kind != PlanKind::Ring)
     throw CaseError("case", "plan.kind", std::string(to_string(request.file.settings.plan.kind)), "ring")
         .in_file(request.file.file.string());
@@ -88,13 +71,12 @@ StepResult forecast_case(const CaseRequest& request, const std::filesystem::path
   ForecastJson& json = result.json;
   json["specimen_is"] = settings.is_virtual ? "virtual" : "real";
   json["calibration_is"] = input.found.is_virtual ? "virtual" : "real";
-  json["photographs"] = observations.size();
+  json["photographs"] = input.belief.rings.size();
   json["calibrated"] = input.found.specimens.size();
   json["ring"] = to_json(ring);
-  json["in_view_mm"] = photographed_in_view(observations, ring.start_deg);
-  json["without_simulation"] = without_simulation(observations, ring, context.monitor);
-  json["with_simulation"] =
-      with_simulation(calibration, observations, ring, mean_bias_mm(*input.found.fit), context.monitor);
+  json["in_view_mm"] = photographed_in_view(input.belief.rings, ring.start_deg);
+  json["without_simulation"] = without_simulation(input.belief, ring, context.monitor);
+  json["with_simulation"] = with_simulation(input.belief, ring, context.monitor);
   const std::filesystem::path folder = run.folder.root() / "forecast";
   require_replaceable(folder);
   AtomicFolder target(folder);

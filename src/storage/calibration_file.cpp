@@ -50,6 +50,7 @@ CalibratedBelief belief_of(const Calibration& calibration, const std::filesystem
     throw DataError(path, "method", "paper", "fit: a grid of scores does not state its uncertainty", kCalibrationHint);
   if (!calibration.chosen) throw DataError(path, "chosen", "null", "a setting with which a simulated ring closed");
   CalibratedBelief belief;
+  belief.file = path;
   belief.samples = calibration.fit->samples;
   belief.rings = rings_of(calibration, path);
   belief.specimens = calibration.fit->specimens.size();

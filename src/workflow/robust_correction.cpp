@@ -104,12 +104,11 @@ class TissueCuts {
                                    belief_.rings.size(), belief_.specimens));
     for (double& error : simulated_mm) error += scenarios_.tissues.front().bias_mm;
     const RingForecaster forecaster(belief_.rings, true);
-    if (!forecaster.is_converged())
-      monitor_.message(Severity::Warning, "forecast: the search for its spreads was ended before it came to rest");
+    warn_unless_converged(forecaster, monitor_);
     scenarios_.photographs = belief_.rings.size();
     scenarios_.prediction = forecaster.predict(body_.ring(), simulated_mm, scenarios_.own_stiffness_sd);
     const RingPrediction& prediction = scenarios_.prediction;
-    require_usable(prediction.simulated_share);
+    require_usable_share(belief_.file, prediction.simulated_share, monitor_);
     residual_.degrees = prediction.degrees;
     residual_.mean_mm = values_at_waypoints(settings_, prediction.residual_mm, intended_, intended_.tumor_edge);
     const std::size_t sectors = prediction.residual_mm.size();
@@ -123,19 +122,6 @@ class TissueCuts {
           Eigen::Map<const Eigen::VectorXd>(share.data(), at_waypoints.rows());
     }
     residual_.covariance_mm2 = at_waypoints * prediction.covariance_mm2 * at_waypoints.transpose();
-  }
-
-  void require_usable(double share) const {
-    if (!contains(kUsableShare, share))
-      throw CaseError("calibration", "fitted",
-                      fmt::format("photographs that differ by {:.2f} of what simulations do", share),
-                      fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
-                      "The simulation says nothing of these specimens");
-    if (!contains(kLikelyShare, share))
-      monitor_.message(Severity::Warning,
-                       fmt::format("forecast: photographs differ by {:.2f} of what the simulations do: the simulation "
-                                   "misleads",
-                                   share));
   }
 
   [[nodiscard]] std::vector<CutScenario> weighted() const {
@@ -259,6 +245,24 @@ class TissueCuts {
 };
 
 }  // namespace
+
+void warn_unless_converged(const RingForecaster& forecaster, Monitor& monitor) {
+  if (!forecaster.is_converged())
+    monitor.message(Severity::Warning, "forecast: the search for its spreads was ended before it came to rest");
+}
+
+void require_usable_share(const std::filesystem::path& file, double simulated_share, Monitor& monitor) {
+  if (!contains(kUsableShare, simulated_share))
+    throw DataError(file, "fitted",
+                    fmt::format("photographs that differ by {:.2f} of what simulations do", simulated_share),
+                    fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
+                    "The simulation says nothing of these specimens");
+  if (!contains(kLikelyShare, simulated_share))
+    monitor.message(Severity::Warning,
+                    fmt::format("forecast: photographs differ by {:.2f} of what the simulations do: the simulation "
+                                "misleads",
+                                simulated_share));
+}
 
 RobustCorrection correct_robustly(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
                                   const CalibratedBelief& belief, const ScenarioRequest& request, Workers& workers,

@@ -1,6 +1,7 @@
 """Should this specimen be corrected? The verdict, its numbers, and what is refused."""
 
 import json
+import math
 import unittest
 
 import small_calibration
@@ -165,14 +166,16 @@ class AssessTest(CommandTest):
         done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
         self.assertIn("1 of the calibration's 2 specimens have a ring", done.stderr)
 
-        # Photographs that fall as simulations rise: the simulation says nothing.
+        # Photographs that lie inside where simulations lie outside: the simulation says nothing.
         def contrary(found):
-            for one, fit in zip(found["fitted"], (-1.0, -6.0)):
-                one.update(fitted_mm=[fit] * 36, observed_mm=[-7.0 - 1.3 * fit] * 36)
+            for one, size in zip(found["fitted"], (1.5, -1.5)):
+                wave = [size * math.cos(4.0 * math.pi * i / 36) for i in range(36)]
+                one.update(fitted_mm=[-3.5 + w for w in wave], observed_mm=[-3.5 - 3.0 * w for w in wave])
 
         small_calibration.write(self.calibration, contrary)
         done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
-        self.assertRegex(done.stderr, "photographs (that )?differ by -[0-9.]+ of what")
+        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        self.assertRegex(done.stderr, "calibration.json: fitted: found photographs that differ by -[0-9.]+ of what simulations do")
         small_calibration.write(self.calibration, farther_out)
         # A correction that expects it itself is assessed, too.
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2, "residual_mm": [1.5]}})

@@ -96,9 +96,9 @@ TEST(FitFactorial, FindsEffectsThatAreKnownWhateverRunsAreMissing) {
     const double expected = k == 2 ? 1.0 : k == 9 ? -0.5 : 0.0;
     EXPECT_NEAR(fit->factors[k].change, expected, 1e-12) << k;
   }
-  EXPECT_FALSE(fit->differences[5]);
-  EXPECT_NEAR(*fit->differences[4], 0.0, 1e-12);
-  EXPECT_GT(*disturbed->differences[4], 0.05) << "what does not fit is left";
+  EXPECT_FALSE(fit->residuals[5]);
+  EXPECT_NEAR(*fit->residuals[4], 0.0, 1e-12);
+  EXPECT_GT(*disturbed->residuals[4], 0.05) << "what does not fit is left";
 }
 
 TEST(FitFactorial, StandardErrorsAreThoseOfTheNoise) {

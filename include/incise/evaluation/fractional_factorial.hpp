@@ -8,9 +8,10 @@
 
 namespace incise {
 
-/// Two-level designs of 8, 16 or 32 runs for at most 4, 8 or 16 factors; of 2 and 4 runs for one and two. No two runs
-/// have the same factors on. They are regular and of resolution IV: what a factor changes is told apart from what any
-/// other and any pair of others changes; pairs are not told apart from every other pair. Source: [BoxHunter1961].
+/// Regular two-level designs of 8, 16 or 32 runs for at most 4, 8 or 16 factors, and of 2 and 4 runs for one and two
+/// factors. No run is repeated. Their resolution is IV: the main effect of a factor is not aliased with other main
+/// effects or with interactions of pairs, but interactions of pairs are aliased with one another.
+/// Source: [BoxHunter1961].
 class FractionalFactorial {
  public:
   using Pair = std::pair<std::size_t, std::size_t>;  ///< of factors, the lower one first
@@ -26,7 +27,7 @@ class FractionalFactorial {
   [[nodiscard]] bool is_alike(std::size_t run, const Pair& pair) const {
     return is_on(run, pair.first) == is_on(run, pair.second);
   }
-  /// All pairs; those of one group are alike in the same runs, so that only what they do together is seen.
+  /// All pairs of factors; the interactions of one group are aliased: only their sum can be estimated.
   [[nodiscard]] const std::vector<std::vector<Pair>>& pair_groups() const { return pair_groups_; }
 
  private:
@@ -42,11 +43,11 @@ struct FactorialEffect {
 };
 
 struct FactorialFit {
-  std::vector<FactorialEffect> factors;            ///< response with the factor less that without it
-  std::vector<std::optional<double>> differences;  ///< run by run: measured less fitted response
+  std::vector<FactorialEffect> factors;          ///< response with the factor less that without it
+  std::vector<std::optional<double>> residuals;  ///< run by run: measured less fitted response
 };
 
-/// Least squares of a level and the effects of all factors.
+/// Least squares for a mean and the main effects of all factors.
 /// @param responses  run by run; absent ones were not measured.
 /// @returns nothing where what was measured does not determine the effects and their standard errors.
 /// @throws InvalidArgument unless there are design.runs() responses, the measured ones finite.

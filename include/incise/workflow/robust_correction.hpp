@@ -11,6 +11,7 @@
 #include <incise/workflow/inputs.hpp>
 #include <incise/workflow/study.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,12 +20,19 @@ namespace incise {
 
 /// What a calibration says of the next specimen.
 struct CalibratedBelief {
+  std::filesystem::path file;  ///< of the calibration, for messages
   std::vector<PosteriorSample> samples;
   std::vector<RingObservation> rings;  ///< its photographs, at least one, as many sectors each, 9 to 360
   std::size_t specimens = 0;           ///< that were fitted
   double speed_mm_s = 13.0;            ///< of the simulated tool; a drag length is reached by its dullness
   bool knows_forces = false;           ///< the pull of every calibration specimen was measured: stiffness is over that
 };
+
+/// Reports a search for a forecast's spreads that did not come to rest.
+void warn_unless_converged(const RingForecaster& forecaster, Monitor& monitor);
+/// Whether a simulation says something of photographs; a share of its differences outside kLikelyShare is reported.
+/// @param file  of the calibration. @throws DataError for a share outside kUsableShare.
+void require_usable_share(const std::filesystem::path& file, double simulated_share, Monitor& monitor);
 
 /// What is known of this specimen's stiffness, and what is asked of the path.
 struct ScenarioRequest {
