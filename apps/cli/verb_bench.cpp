@@ -1,10 +1,12 @@
 #include "option_checks.hpp"
 #include "options.hpp"
+#include "paths_table.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/laboratory/acceptance.hpp>
 #include <incise/laboratory/bench_steps.hpp>
 #include <incise/laboratory/factor_screening.hpp>
+#include <incise/laboratory/pooling.hpp>
 #include <incise/robot/checks.hpp>
 
 #include <fmt/format.h>
@@ -129,6 +131,32 @@ std::vector<std::string> factor_names() {
   return names;
 }
 
+int pool(const CommonOptions& options, const std::vector<std::filesystem::path>& experiments) {
+  const std::filesystem::path output = options.required_output("pooled");
+  refuse_input_as_output("-o", output, experiments);
+  Console console(options.level());
+  const nlohmann::ordered_json result = pool_experiments(experiments, output, options.context(), console);
+  if (options.json) {
+    print_result(options, result);
+    return kDone;
+  }
+  fmt::print("VIRTUAL specimens of {} series, mean |error| of the photographs\n", result.at("series").size());
+  print_paths("path", result);
+  print_paths("of these, unlike the calibration's", result.at("unlike"));
+  print_paths("of these, like the calibration's", result.at("like"));
+  const auto& robust = result.at("robust_against_default");
+  if (robust.at("difference_mm").is_number())
+    fmt::print("{:<34} {:+.2f} mm on {} specimens; close margins of {}: {} before, {} robust\n",
+               "robust less default correction", robust.at("difference_mm").get<double>(),
+               robust.at("compared").get<std::size_t>(), robust.at("closed").get<std::size_t>(),
+               robust.at("close_margins_first").get<std::size_t>(),
+               robust.at("close_margins_second").get<std::size_t>());
+  print_advice(result.at("advice"));
+  nlohmann::ordered_json summary{{"pooled", (output / "pooled.json").string()}, {"figure", result.at("figure")}};
+  print_result(options, summary);
+  return kDone;
+}
+
 void add_factors(CLI::App& verb, const std::string& meaning, const std::function<void(second_bench::Factors)>& take) {
   verb.add_option_function<std::vector<std::string>>(
           "--factors",
@@ -243,6 +271,14 @@ void add_bench(Application& application) {
         screened->factors = std::move(factors);
       });
   add_overrides(*verb, screened->overrides);
+
+  auto pooled = std::make_shared<std::vector<std::filesystem::path>>();
+  verb = application.add_verb_to(*bench, "pool",
+                                 "Take several finished experiments together: every path against the best one without "
+                                 "simulation, and the advice against what happened",
+                                 "incise bench pool series1 series2 -o pooled",
+                                 [pooled](const CommonOptions& options) { return pool(options, *pooled); });
+  verb->add_option("experiments", *pooled, "Folders of `incise experiment`, two or more")->required()->expected(2, -1);
 }
 
 }  // namespace incise::cli

@@ -1,5 +1,6 @@
 #include "option_checks.hpp"
 #include "options.hpp"
+#include "paths_table.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/laboratory/experiment.hpp>
@@ -27,32 +28,6 @@ void print_gain(const char* name, const nlohmann::ordered_json& summary) {
              summary.at("gain_percent").get<double>(), summary.at("pairs").get<std::size_t>(), said);
 }
 
-void print_area(const char* name, const nlohmann::ordered_json& area) {
-  if (!area.is_object()) return;
-  fmt::print("{:<34} {:.2f} ({:.2f} to {:.2f}); {} of {} were worse\n", name, area.at("area").get<double>(),
-             area.at("low").get<double>(), area.at("high").get<double>(), area.at("worse").get<std::size_t>(),
-             area.at("worse").get<std::size_t>() + area.at("not_worse").get<std::size_t>());
-}
-
-/// Every path, and how it compares with the best one without a simulated cut.
-void print_paths(const char* of, const nlohmann::ordered_json& result) {
-  const nlohmann::ordered_json& best = result.at("best_without_simulation");
-  fmt::print("{:<34} {:>8} {:>9} {:>6} {:>8}  {}\n", of, "mean, mm", "specimens", "worse", "not cut",
-             "difference from the best without simulation, mm (95 %)");
-  for (const auto& [name, path] : result.at("rivals").items()) {
-    std::string against = best == name ? "best" : "";
-    if (path.at("difference_mm").is_number()) against = fmt::format("{:+.2f}", path.at("difference_mm").get<double>());
-    if (path.at("confidence_mm").is_array())
-      against += fmt::format(" ({:+.2f} to {:+.2f})", path.at("confidence_mm")[0].get<double>(),
-                             path.at("confidence_mm")[1].get<double>());
-    const std::string mean =
-        path.at("mean_mm").is_number() ? fmt::format("{:.2f}", path.at("mean_mm").get<double>()) : "-";
-    fmt::print("{:<34} {:>8} {:>9} {:>6} {:>8}  {}\n", name, mean, path.at("pairs").get<std::size_t>(),
-               path.at("worse").get<std::size_t>(), path.at("uncut").get<std::size_t>(), against);
-  }
-  if (best.is_null()) fmt::print("no rival without a simulated cut: no benefit of simulation can be claimed\n");
-}
-
 /// What a person wants of it; everything is in study.json and the report.
 void print_summary(const nlohmann::ordered_json& result) {
   fmt::print("VIRTUAL specimens, mean |error| of the photographs\n");
@@ -69,17 +44,7 @@ void print_summary(const nlohmann::ordered_json& result) {
                result.at("known_physics").at("mean_after_mm").get<double>(),
                result.at("known_physics").at("specimens").get<std::size_t>());
   }
-  if (result.at("advice").is_object()) {
-    print_area("advice: area under the curve", result.at("advice").at("auc"));
-    print_area("  of those outside alone", result.at("advice").at("auc_outside_alone"));
-    print_area("the same without the pull", result.at("advice").at("auc_without_pull"));
-    for (const auto& interval : result.at("advice").at("intervals"))
-      fmt::print("{:<34} {:.2f} ({:.2f} to {:.2f}), {} cuts\n",
-                 fmt::format("{:.0f} % interval, {}: holds", 100.0 * interval.at("level").get<double>(),
-                             interval.at("of").get<std::string>()),
-                 interval.at("share").get<double>(), interval.at("low").get<double>(),
-                 interval.at("high").get<double>(), interval.at("cuts").get<std::size_t>());
-  }
+  print_advice(result.at("advice"));
   for (const auto& one : result.at("left_out_of_calibration")) {
     fmt::print("{} (calibrate): left out of the fit: {}\n", one.at("name").get<std::string>(),
                one.at("reason").get<std::string>());

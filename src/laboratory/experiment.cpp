@@ -5,7 +5,6 @@
 #include "laboratory/outside_range.hpp"
 #include "laboratory/virtual_laboratory.hpp"
 
-#include <incise/calibration/ring_covariates.hpp>
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/version.hpp>
@@ -42,9 +41,9 @@ void require_done(const StepAnswer& answer, const char* step, const ExperimentSt
 /// Along whose paths test specimens are cut.
 std::vector<RivalPath> rivals_of(const ExperimentSettings& settings) {
   if (settings.with_rivals)
-    return {RivalPath::Constant,      RivalPath::Profile,     RivalPath::ProfileSmoothed,
-            RivalPath::ProfileInView, RivalPath::Photographs, RivalPath::PaperPass,
-            RivalPath::Uncalibrated,  RivalPath::Hybrid,      RivalPath::Learned};
+    return {RivalPath::Constant,    RivalPath::Profile,   RivalPath::ProfileSmoothed, RivalPath::ProfileInView,
+            RivalPath::Photographs, RivalPath::PaperPass, RivalPath::Uncalibrated,    RivalPath::Hybrid,
+            RivalPath::Learned,     RivalPath::Robust};
   return settings.with_paper_pass ? std::vector{RivalPath::PaperPass} : std::vector<RivalPath>{};
 }
 
@@ -70,16 +69,6 @@ ExperimentJson comparison_json(const PathComparison& paths) {
   const std::optional<std::string>& best = paths.best_without_simulation;
   return {{"rivals", paths_json(paths)},
           {"best_without_simulation", best ? ExperimentJson(*best) : ExperimentJson(nullptr)}};
-}
-
-/// Those whose rings are unlike the calibration's, or the others; without a forecast a ring is neither.
-std::vector<Trial> test_specimens(const std::vector<Trial>& trials, bool is_unlike) {
-  std::vector<Trial> chosen;
-  for (const Trial& trial : trials) {
-    if (trial.role == TrialRole::Test && trial.unlike && (trial.unlike->size() >= kUnlikeFrom) == is_unlike)
-      chosen.push_back(trial);
-  }
-  return chosen;
 }
 
 /// What the calibration's data say: estimates and sentences, without the posterior's samples. Null without a fit.
@@ -191,7 +180,8 @@ ExperimentJson Experiment::run() {
   const ExperimentJson advice = hold_advice_against_truth(trials_, truth_);
   if (!advice.is_null()) {
     AtomicFolder folder(root_ / "advice");
-    write_advice(folder.path(), advice);
+    write_json(folder.path() / "advice.json", advice);
+    draw_advice(folder.path(), advice);
     write_manifest(folder.path(),
                    steps::manifest_of(context_, settings_json(settings_).dump(), {}, seconds_since(start)));
     folder.commit();
@@ -207,11 +197,12 @@ ExperimentJson Experiment::run() {
     if (key != "specimens") result[key] = value;
   if (std::find(rivals_.begin(), rivals_.end(), RivalPath::PaperPass) != rivals_.end())
     result["paper_pass"] = to_json(summary_of(trials_, TrialRole::Test, RivalPath::PaperPass));
-  const PathComparison paths = compare_paths(trials_);
+  const std::vector<TestedSpecimen> tested = tested_specimens(trials_, truth_);
+  const PathComparison paths = compare_paths(tested);
   result.update(comparison_json(paths));
   if (settings_.with_rivals) {
     for (const bool is_unlike : {true, false})
-      result[is_unlike ? "unlike" : "like"] = comparison_json(compare_paths(test_specimens(trials_, is_unlike)));
+      result[is_unlike ? "unlike" : "like"] = comparison_json(compare_paths(of_likeness(tested, is_unlike)));
   }
   if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
   result["advice"] = advice;
@@ -224,6 +215,8 @@ ExperimentJson Experiment::run() {
       comparison_.is_object() ? comparison_.value("specimens", ExperimentJson()) : ExperimentJson(nullptr);
   result["table_1"] = table_1_.is_object() ? table_1_.value("rows", ExperimentJson()) : ExperimentJson(nullptr);
   result["table_2"] = table_2_json(trials_);
+  result["tested_specimens"] = ExperimentJson::array();
+  for (const TestedSpecimen& specimen : tested) result["tested_specimens"].push_back(to_json(specimen));
   result["assessments"] = assessments_json(trials_);
   result["figures"] = ExperimentJson::array();
   for (const char* figure : {"comparison/box_plot.svg", "comparison/error_by_clock.svg", "table_1/table_1.svg",
@@ -469,6 +462,9 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, co
       choice.residual_mm = list_in(forecast, "/with_simulation/residual_mm");
       choice.simulated_share = forecast.at("with_simulation").at("simulated_share").get<double>();
       break;
+    case RivalPath::Robust:
+      choice = calibrated_choice(*tool_);
+      break;
   }
   return variant;
 }
@@ -487,6 +483,11 @@ void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
     }
     const std::filesystem::path file =
         specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa(), forecast.result));
+    if (path == RivalPath::Robust) {
+      const steps::CalibratedRequest known{root_ / "calibration/calibration.json", specimen.stretch_force_n()};
+      trial.rivals.push_back({path, specimen.cut_robustly(file, known, specimen.at(name), name)});
+      continue;
+    }
     trial.rivals.push_back({path, specimen.cut_again(file, specimen.at(name), name, !is_without_simulation(path)).cut});
   }
 }

@@ -1,9 +1,8 @@
 #include "laboratory/experiment_advice.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/evaluation/forecast_skill.hpp>
-#include <incise/imaging/photo_contours.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/json_file.hpp>
 #include <incise/report/line_plot.hpp>
 #include <incise/workflow/case.hpp>
 
@@ -17,60 +16,48 @@ namespace {
 
 using AdviceJson = nlohmann::ordered_json;
 
-/// What really happened in one cut.
-struct TrueCut {
-  std::optional<double> mean_abs_error_mm;  ///< absent: the ring stayed open
-  double least_margin_mm = 0.0;             ///< of a closed one
-};
-
-/// Nothing where this run made no such cut, whatever an earlier one left there.
-std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const Trial& trial, const TrialCut& cut,
-                                const char* name) {
-  if (!cut.is_made) return std::nullopt;
-  const std::filesystem::path file = truth / fmt::format("{}_{}", trial.name, name) / "cut_truth.json";
-  const AdviceJson json = read_json(file);
-  TrueCut result;
-  if (!json.contains("mean_abs_error_mm")) return result;
-  result.mean_abs_error_mm = json.at("mean_abs_error_mm").get<double>();
-  const auto errors = json.at("signed_errors_mm").get<std::vector<double>>();
-  result.least_margin_mm = json.at("target_mm").get<double>() + *std::min_element(errors.begin(), errors.end());
-  return result;
-}
-
-/// A specimen that was advised on and cut twice.
-struct AdvisedSpecimen {
-  const Trial* trial = nullptr;
-  TrueCut planned, corrected;
-  std::optional<TrueCut> withheld;  ///< corrected without the pull; absent: not asked for, or refused
-};
-
-std::optional<double> gain_mm(const TrueCut& planned, const TrueCut& again) {
-  if (!planned.mean_abs_error_mm || !again.mean_abs_error_mm) return std::nullopt;
-  return *planned.mean_abs_error_mm - *again.mean_abs_error_mm;
-}
-
-std::optional<bool> is_worse(const TrueCut& planned, const TrueCut& again) {
-  return is_second_worse(planned.mean_abs_error_mm, again.mean_abs_error_mm);
-}
-
 bool is_advice(const AdviceJson& assessment) {
   return assessment.is_object() && assessment.contains("advice");
 }
 
-/// One of the probabilities of `assess`. Where nothing could be predicted, either cut may be the worse one, and the
-/// calibration says nothing.
-double stated(const AdviceJson& assessment, const char* key) {
-  constexpr double kNothingKnown = 0.5;
-  return assessment.contains(key) && assessment.at(key).is_number() ? assessment.at(key).get<double>() : kNothingKnown;
+std::optional<double> number_at(const AdviceJson& assessment, const char* pointer) {
+  const AdviceJson found = assessment.value(AdviceJson::json_pointer(pointer), AdviceJson());
+  return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
 }
 
+std::optional<Interval> interval_at(const AdviceJson& assessment, const std::string& pointer) {
+  const AdviceJson ends = assessment.value(AdviceJson::json_pointer(pointer), AdviceJson());
+  if (!ends.is_array()) return std::nullopt;
+  return Interval{ends.at(0).get<double>(), ends.at(1).get<double>()};
+}
+
+/// @param path  of the cut in an assessment: intended or corrected.
+AdvisedCut advised_cut(const AdviceJson& assessment, const std::string& path, const TrialCut& cut,
+                       const TrueCut& known) {
+  AdvisedCut result;
+  result.p_close_margin = number_at(assessment, ("/p_close_margin/" + path).c_str());
+  result.error_80 = interval_at(assessment, "/" + path + "/abs_error_80_mm");
+  result.error_95 = interval_at(assessment, "/" + path + "/abs_error_95_mm");
+  result.photographed_mm = mean_error_mm(cut);
+  result.true_mm = known.mean_abs_error_mm;
+  if (known.mean_abs_error_mm) result.least_margin_mm = known.least_margin_mm;
+  return result;
+}
+
+/// Where nothing could be predicted, either cut may be the worse one, and the calibration says nothing.
+double stated(const std::optional<double>& probability) {
+  constexpr double kNothingKnown = 0.5;
+  return probability.value_or(kNothingKnown);
+}
+
+using StatedProbability = std::optional<double> AdvisedSpecimen::*;
+
 std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& specimens, bool is_outside_alone,
-                                          const char* key = "p_worse") {
+                                          StatedProbability key = &AdvisedSpecimen::p_worse) {
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
-    if (is_outside_alone && specimen.trial->role != TrialRole::Outside) continue;
-    const std::optional<bool> worse = is_worse(specimen.planned, specimen.corrected);
-    if (worse) forecasts.push_back({stated(specimen.trial->assessment, key), *worse});
+    if (is_outside_alone && specimen.role != TrialRole::Outside) continue;
+    if (const std::optional<bool> worse = specimen.is_worse()) forecasts.push_back({stated(specimen.*key), *worse});
   }
   return forecasts;
 }
@@ -78,10 +65,8 @@ std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& sp
 std::vector<Forecast> forecasts_without_pull(const std::vector<AdvisedSpecimen>& specimens) {
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
-    const AdviceJson& said = specimen.trial->assessment_without_pull;
-    if (!is_advice(said) || !specimen.withheld) continue;
-    const std::optional<bool> worse = is_worse(specimen.planned, *specimen.withheld);
-    if (worse) forecasts.push_back({stated(said, "p_worse"), *worse});
+    if (const std::optional<bool> worse = specimen.is_worse_without_pull())
+      forecasts.push_back({stated(specimen.p_worse_without_pull), *worse});
   }
   return forecasts;
 }
@@ -105,11 +90,9 @@ AdviceJson close_margin_json(const std::vector<AdvisedSpecimen>& specimens) {
   const double limit_mm = Case{}.close_margin_mm;
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
-    for (const auto& [path, cut] :
-         {std::pair("intended", &specimen.planned), std::pair("corrected", &specimen.corrected)}) {
-      const AdviceJson& stated = specimen.trial->assessment.value("p_close_margin", AdviceJson());
-      if (!cut->mean_abs_error_mm || !stated.is_object() || !stated.at(path).is_number()) continue;
-      forecasts.push_back({stated.at(path).get<double>(), cut->least_margin_mm < limit_mm});
+    for (const AdvisedCut* cut : {&specimen.planned, &specimen.corrected}) {
+      if (cut->p_close_margin && cut->least_margin_mm)
+        forecasts.push_back({*cut->p_close_margin, *cut->least_margin_mm < limit_mm});
     }
   }
   if (forecasts.empty()) return nullptr;
@@ -129,74 +112,67 @@ AdviceJson close_margin_json(const std::vector<AdvisedSpecimen>& specimens) {
           {"bins", std::move(bins)}};
 }
 
-/// What a photograph shows of one thing that was foretold; nothing: it was not measured.
-using Shown = std::optional<double> (*)(const Trial&);
+/// What was foretold, and what photographs then show of it; nothing: not foretold, or not measured.
+struct Foretold {
+  std::optional<Interval> interval;
+  std::optional<double> shown;
+};
 struct ForetoldInterval {
   const char* of;
-  Shown shown;
-  const char* middle_80;  ///< where an assessment has it
-  const char* middle_95;
+  double level;
+  Foretold (*in)(const AdvisedSpecimen&);
 };
-constexpr ForetoldInterval kForetold[] = {
-    {"planned", [](const Trial& trial) { return mean_error_mm(trial.planned); }, "/intended/abs_error_80_mm",
-     "/intended/abs_error_95_mm"},
-    {"corrected", [](const Trial& trial) { return mean_error_mm(trial.corrected); }, "/corrected/abs_error_80_mm",
-     "/corrected/abs_error_95_mm"},
-    {"gain",
-     [](const Trial& trial) -> std::optional<double> {
-       const auto before = mean_error_mm(trial.planned), after = mean_error_mm(trial.corrected);
-       return before && after ? std::optional(*before - *after) : std::nullopt;
-     },
-     "/expected_gain_mm/middle_80", "/expected_gain_mm/middle_95"}};
+
+std::optional<double> photographed_gain_mm(const AdvisedSpecimen& s) {
+  if (!s.planned.photographed_mm || !s.corrected.photographed_mm) return std::nullopt;
+  return *s.planned.photographed_mm - *s.corrected.photographed_mm;
+}
+
+constexpr ForetoldInterval kForetold[] = {{"planned", 0.80,
+                                           [](const AdvisedSpecimen& s) {
+                                             return Foretold{s.planned.error_80, s.planned.photographed_mm};
+                                           }},
+                                          {"planned", 0.95,
+                                           [](const AdvisedSpecimen& s) {
+                                             return Foretold{s.planned.error_95, s.planned.photographed_mm};
+                                           }},
+                                          {"corrected", 0.80,
+                                           [](const AdvisedSpecimen& s) {
+                                             return Foretold{s.corrected.error_80, s.corrected.photographed_mm};
+                                           }},
+                                          {"corrected", 0.95,
+                                           [](const AdvisedSpecimen& s) {
+                                             return Foretold{s.corrected.error_95, s.corrected.photographed_mm};
+                                           }},
+                                          {"gain", 0.80,
+                                           [](const AdvisedSpecimen& s) {
+                                             return Foretold{s.gain_80, photographed_gain_mm(s)};
+                                           }},
+                                          {"gain", 0.95, [](const AdvisedSpecimen& s) {
+                                             return Foretold{s.gain_95, photographed_gain_mm(s)};
+                                           }}};
 
 /// How often intervals of `assess` hold what photographs then show.
 AdviceJson intervals_json(const std::vector<AdvisedSpecimen>& specimens) {
   AdviceJson list = AdviceJson::array();
-  for (const ForetoldInterval& foretold : kForetold) {
-    for (const auto& [level, pointer] : {std::pair(0.80, foretold.middle_80), std::pair(0.95, foretold.middle_95)}) {
-      std::vector<Forecast> held;
-      for (const AdvisedSpecimen& specimen : specimens) {
-        const std::optional<double> shown = foretold.shown(*specimen.trial);
-        const AdviceJson ends = specimen.trial->assessment.value(AdviceJson::json_pointer(pointer), AdviceJson());
-        if (!shown || !ends.is_array()) continue;
-        held.push_back({level, *shown >= ends.at(0).get<double>() && *shown <= ends.at(1).get<double>()});
-      }
-      if (held.empty()) continue;
-      const ReliabilityBin all = reliability(held, 1).bins.front();
-      list.push_back({{"of", foretold.of},
-                      {"level", level},
-                      {"cuts", all.forecasts},
-                      {"held", all.happened},
-                      {"share", all.share},
-                      {"low", all.confidence.low},
-                      {"high", all.confidence.high}});
+  for (const ForetoldInterval& one : kForetold) {
+    std::vector<Forecast> held;
+    for (const AdvisedSpecimen& specimen : specimens) {
+      const Foretold found = one.in(specimen);
+      if (!found.interval || !found.shown) continue;
+      held.push_back({one.level, *found.shown >= found.interval->low && *found.shown <= found.interval->high});
     }
+    if (held.empty()) continue;
+    const ReliabilityBin all = reliability(held, 1).bins.front();
+    list.push_back({{"of", one.of},
+                    {"level", one.level},
+                    {"cuts", all.forecasts},
+                    {"held", all.happened},
+                    {"share", all.share},
+                    {"low", all.confidence.low},
+                    {"high", all.confidence.high}});
   }
   return list;
-}
-
-AdviceJson specimen_json(const AdvisedSpecimen& specimen) {
-  const auto or_null = [](const auto& value) { return value ? AdviceJson(*value) : AdviceJson(nullptr); };
-  const AdviceJson& said = specimen.trial->assessment;
-  AdviceJson json{{"specimen", specimen.trial->name},
-                  {"role", to_string(specimen.trial->role)},
-                  {"kind", specimen.trial->kind},
-                  {"advice", said.value("advice", AdviceJson())},
-                  {"expected_gain_mm", said.value("expected_gain_mm", AdviceJson())},
-                  {"p_worse", said.value("p_worse", AdviceJson())},
-                  {"p_worse_if_alike", said.value("p_worse_if_alike", AdviceJson())},
-                  {"p_worse_if_unlike", said.value("p_worse_if_unlike", AdviceJson())},
-                  {"p_unlike", said.value("p_unlike", AdviceJson())},
-                  {"true_planned_mm", or_null(specimen.planned.mean_abs_error_mm)},
-                  {"true_corrected_mm", or_null(specimen.corrected.mean_abs_error_mm)},
-                  {"true_gain_mm", or_null(gain_mm(specimen.planned, specimen.corrected))},
-                  {"is_worse", or_null(is_worse(specimen.planned, specimen.corrected))}};
-  if (is_advice(specimen.trial->assessment_without_pull) && specimen.withheld) {
-    json["p_worse_without_pull"] = specimen.trial->assessment_without_pull.value("p_worse", AdviceJson());
-    json["true_withheld_mm"] = or_null(specimen.withheld->mean_abs_error_mm);
-    json["is_worse_without_pull"] = or_null(is_worse(specimen.planned, *specimen.withheld));
-  }
-  return json;
 }
 
 std::string with_area(const char* name, const AdviceJson& area) {
@@ -256,43 +232,106 @@ void write_svg(const std::filesystem::path& file, const LinePlot& plot) {
 
 }  // namespace
 
-AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std::filesystem::path& truth) {
+std::optional<bool> AdvisedSpecimen::is_worse() const {
+  return is_second_worse(planned.true_mm, corrected.true_mm);
+}
+
+std::optional<bool> AdvisedSpecimen::is_worse_without_pull() const {
+  return withheld ? is_second_worse(planned.true_mm, withheld->true_mm) : std::nullopt;
+}
+
+void describe(Visitor& v, AdvisedSpecimen& s) {
+  v("specimen", s.name, "Its name.");
+  v("role", s.role, "test or outside.");
+  v("kind", s.kind, "Of one outside the calibrated range; else empty.");
+  v("advice", s.advice, "Of `incise assess`.");
+  v({"expected_gain_mm", "Expected mean absolute error as planned less that corrected.", "mm"}, s.expected_gain_mm);
+  describe_interval(v, {"gain_80_mm", "Stated middle 80 % of that.", "mm"}, s.gain_80);
+  describe_interval(v, {"gain_95_mm", "Middle 95 %, likewise.", "mm"}, s.gain_95);
+  v("p_worse", s.p_worse, "Stated probability that the corrected cut is the worse one.", {0.0, 1.0});
+  v("p_worse_if_alike", s.p_worse_if_alike, "By the simulation.", {0.0, 1.0});
+  v("p_worse_if_unlike", s.p_worse_if_unlike, "By the move alone.", {0.0, 1.0});
+  v("p_unlike", s.p_unlike, "That the calibration does not hold.", {0.0, 1.0});
+  v("planned", s.planned, "The cut as planned.");
+  v("corrected", s.corrected, "The corrected cut.");
+  v.derived("is_worse", s.is_worse(), "Whether the corrected cut is, by the truth; absent: two open rings.");
+  v("p_worse_without_pull", s.p_worse_without_pull, "As p_worse, had the pull not been measured.", {0.0, 1.0});
+  v("withheld", s.withheld, "The cut corrected without the pull.");
+  v.derived("is_worse_without_pull", s.is_worse_without_pull(), "As is_worse, of that cut.");
+}
+
+std::vector<AdvisedSpecimen> advised_specimens(const std::vector<Trial>& trials, const std::filesystem::path& truth) {
   std::vector<AdvisedSpecimen> specimens;
-  AdviceJson skipped = AdviceJson::array();
   for (const Trial& trial : trials) {
     if (trial.role == TrialRole::Calibrate) continue;
     const std::optional<TrueCut> planned = true_cut(truth, trial, trial.planned, "planned"),
                                  corrected = true_cut(truth, trial, trial.corrected, "corrected");
-    if (is_advice(trial.assessment) && planned && corrected)
-      specimens.push_back({&trial, *planned, *corrected, true_cut(truth, trial, trial.withheld, "withheld")});
-    else
-      skipped.push_back({{"specimen", trial.name}, {"kind", trial.kind}, {"ended_at", refusals_of(trial)}});
+    const AdviceJson& said = trial.assessment;
+    if (!is_advice(said) || !planned || !corrected) continue;
+    AdvisedSpecimen specimen{.name = trial.name,
+                             .role = trial.role,
+                             .kind = trial.kind,
+                             .advice = said.at("advice").get<std::string>(),
+                             .expected_gain_mm = number_at(said, "/expected_gain_mm/mean"),
+                             .gain_80 = interval_at(said, "/expected_gain_mm/middle_80"),
+                             .gain_95 = interval_at(said, "/expected_gain_mm/middle_95"),
+                             .p_worse = number_at(said, "/p_worse"),
+                             .p_worse_if_alike = number_at(said, "/p_worse_if_alike"),
+                             .p_worse_if_unlike = number_at(said, "/p_worse_if_unlike"),
+                             .p_unlike = number_at(said, "/p_unlike"),
+                             .planned = advised_cut(said, "intended", trial.planned, *planned),
+                             .corrected = advised_cut(said, "corrected", trial.corrected, *corrected),
+                             .p_worse_without_pull = {},
+                             .withheld = {}};
+    const AdviceJson& without = trial.assessment_without_pull;
+    const std::optional<TrueCut> withheld = true_cut(truth, trial, trial.withheld, "withheld");
+    if (is_advice(without) && withheld) {
+      specimen.p_worse_without_pull = number_at(without, "/p_worse");
+      specimen.withheld = advised_cut(without, "corrected", trial.withheld, *withheld);
+    }
+    specimens.push_back(std::move(specimen));
   }
+  return specimens;
+}
+
+AdviceJson advice_scores(const std::vector<AdvisedSpecimen>& specimens) {
   if (specimens.empty()) return nullptr;
   AdviceJson json;
   json["specimen_is"] = "virtual";
   json["advised"] = specimens.size();
-  json["worse"] = std::count_if(specimens.begin(), specimens.end(), [](const AdvisedSpecimen& s) {
-    return is_worse(s.planned, s.corrected).value_or(false);
-  });
+  json["worse"] = std::count_if(specimens.begin(), specimens.end(),
+                                [](const AdvisedSpecimen& s) { return s.is_worse().value_or(false); });
   json["auc"] = auc_json(forecasts_with_pull(specimens, false));
   json["auc_outside_alone"] = auc_json(forecasts_with_pull(specimens, true));
-  for (const char* part :
-       {"p_worse_if_alike", "p_worse_if_unlike", "p_unlike"}) {  // what p_worse is made of, each for itself
-    json["auc_of"][part] = auc_json(forecasts_with_pull(specimens, false, part));
-    json["auc_of_outside_alone"][part] = auc_json(forecasts_with_pull(specimens, true, part));
+  for (const auto& [name, part] : {std::pair{"p_worse_if_alike", &AdvisedSpecimen::p_worse_if_alike},
+                                   std::pair{"p_worse_if_unlike", &AdvisedSpecimen::p_worse_if_unlike},
+                                   std::pair{"p_unlike", &AdvisedSpecimen::p_unlike}}) {
+    json["auc_of"][name] = auc_json(forecasts_with_pull(specimens, false, part));
+    json["auc_of_outside_alone"][name] = auc_json(forecasts_with_pull(specimens, true, part));
   }
   json["auc_without_pull"] = auc_json(forecasts_without_pull(specimens));
   json["close_margin"] = close_margin_json(specimens);
   json["intervals"] = intervals_json(specimens);
   json["specimens"] = AdviceJson::array();
-  for (const AdvisedSpecimen& specimen : specimens) json["specimens"].push_back(specimen_json(specimen));
-  json["skipped"] = std::move(skipped);
+  for (const AdvisedSpecimen& specimen : specimens) json["specimens"].push_back(to_json(specimen));
   return json;
 }
 
-void write_advice(const std::filesystem::path& folder, const AdviceJson& advice) {
-  write_json(folder / "advice.json", advice);
+AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std::filesystem::path& truth) {
+  const std::vector<AdvisedSpecimen> specimens = advised_specimens(trials, truth);
+  AdviceJson json = advice_scores(specimens);
+  if (json.is_null()) return json;
+  json["skipped"] = AdviceJson::array();
+  for (const Trial& trial : trials) {
+    const bool is_advised = std::any_of(specimens.begin(), specimens.end(),
+                                        [&trial](const AdvisedSpecimen& s) { return s.name == trial.name; });
+    if (trial.role != TrialRole::Calibrate && !is_advised)
+      json["skipped"].push_back({{"specimen", trial.name}, {"kind", trial.kind}, {"ended_at", refusals_of(trial)}});
+  }
+  return json;
+}
+
+void draw_advice(const std::filesystem::path& folder, const AdviceJson& advice) {
   if (advice.at("auc").is_object()) write_svg(folder / "roc.svg", roc_plot(advice));
   if (advice.at("close_margin").is_object())
     write_svg(folder / "reliability.svg", reliability_plot(advice.at("close_margin")));

@@ -103,15 +103,17 @@ std::string refused_specimens(const std::vector<Trial>& trials) {
 
 /// The figures that the experiment was made for: every path, and its distance from the best one without simulation.
 ReportTable outcome_table(const PathComparison& paths, const ReportJson& result) {
-  ReportTable table{"Result (virtual): mean over specimens of the photographs' mean absolute error, path by path",
-                    {"path", "simulated", "specimens", "mean_mm", "worse", "not cut",
-                     "difference from the best without simulation, mm", "95 % interval, mm"},
-                    {}};
+  ReportTable table{
+      "Result (virtual): mean over specimens of the photographs' mean absolute error, path by path",
+      {"path", "simulated", "specimens", "mean_mm", "worse", "by more than 0.1 mm, or opened", "not cut",
+       "margin below 2.2 mm, of closed", "difference from the best without simulation, mm", "95 % interval, mm"},
+      {}};
   for (const PathResult& path : paths.paths) {
     const bool is_best = path.name == paths.best_without_simulation;
     table.rows.push_back(
         {path.name, path.is_simulated ? "yes" : "no", std::to_string(path.pairs),
-         path.mean_mm ? measure_text(*path.mean_mm, "mm") : "", std::to_string(path.worse), std::to_string(path.uncut),
+         path.mean_mm ? measure_text(*path.mean_mm, "mm") : "", std::to_string(path.worse), std::to_string(path.harmed),
+         std::to_string(path.uncut), fmt::format("{} of {}", path.close_margins, path.closed),
          is_best              ? "best"
          : path.difference_mm ? fmt::format("{:+.2f}", *path.difference_mm)
                               : "",
@@ -120,7 +122,7 @@ ReportTable outcome_table(const PathComparison& paths, const ReportJson& result)
   if (result.contains("known_physics")) {
     const ReportJson& floor = result.at("known_physics");
     table.rows.push_back({"known-physics limit (the arm's errors not known)", "", cell(floor.at("specimens"), ""),
-                          cell(floor.at("mean_after_mm"), "mean_after_mm"), "", "", "", ""});
+                          cell(floor.at("mean_after_mm"), "mean_after_mm"), "", "", "", "", "", ""});
   }
   return table;
 }
@@ -130,7 +132,7 @@ std::string claim(const PathComparison& paths) {
   if (!paths.best_without_simulation)
     return "No rival without a simulated cut can be compared, so no benefit of simulation can be claimed. ";
   std::string claims;
-  for (const char* name : {"incise", "hybrid"}) {
+  for (const char* name : {"incise", "hybrid", "learned"}) {
     if (const std::string one = claim_of(paths, name); !one.empty()) claims += one + ". ";
   }
   return claims;

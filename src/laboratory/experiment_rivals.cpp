@@ -1,7 +1,9 @@
 #include "laboratory/experiment_rivals.hpp"
 
 #include <incise/core/described_json.hpp>
+#include <incise/evaluation/cluster_bootstrap.hpp>
 #include <incise/evaluation/t_tests.hpp>
+#include <incise/workflow/case.hpp>
 
 #include <fmt/format.h>
 
@@ -10,81 +12,115 @@
 namespace incise::laboratory {
 namespace {
 
-constexpr std::string_view kAsPlanned = "as_planned";
-constexpr std::string_view kIncise = "incise";
+constexpr double kHarmMm = 0.1;
 
-/// The cut of a specimen along the path of that name; nothing: it was not asked for.
-const TrialCut* cut_along(const Trial& trial, std::string_view name) {
-  if (name == kAsPlanned) return &trial.planned;
-  if (name == kIncise) return &trial.corrected;
-  return find_rival(trial, *value_of<RivalPath>(name));
+/// A specimen's photographed mean |error| along a path; nothing: no closed ring, or not asked for.
+std::optional<double> error_along(const TestedSpecimen& specimen, std::string_view name) {
+  const PathCut* cut = specimen.find(name);
+  return cut != nullptr && cut->end == PathEnd::Measured ? cut->mean_abs_error_mm : std::nullopt;
 }
 
-/// Of a test specimen whose planned cut was measured; nothing: no closed ring.
-std::optional<double> error_along(const Trial& trial, std::string_view name) {
-  if (trial.role != TrialRole::Test || !trial.planned.measured) return std::nullopt;
-  const TrialCut* cut = cut_along(trial, name);
-  return cut != nullptr ? mean_error_mm(*cut) : std::nullopt;
-}
-
-PathResult planned_result(const std::vector<Trial>& trials) {
-  PathResult result{.name = std::string(kAsPlanned)};
-  double sum = 0.0;
-  for (const Trial& trial : trials) {
-    const std::optional<double> error = mean_error_mm(trial.planned);
-    if (trial.role != TrialRole::Test || !error) continue;
-    ++result.pairs;
-    sum += *error;
+/// What came of a path in one specimen.
+void add_cut(const TestedSpecimen& specimen, const PathCut& cut, PathResult& result, double& sum_mm) {
+  if (cut.end == PathEnd::NotCut) {
+    ++result.uncut;
+    return;
   }
-  if (result.pairs > 0) result.mean_mm = sum / static_cast<double>(result.pairs);
+  if (cut.least_margin_mm) {
+    ++result.closed;
+    if (*cut.least_margin_mm < Case{}.close_margin_mm) ++result.close_margins;
+  }
+  if (cut.end == PathEnd::Open) {
+    ++result.worse;
+    ++result.harmed;
+    return;
+  }
+  const double change_mm = *cut.mean_abs_error_mm - error_along(specimen, kAsPlannedPath).value();
+  ++result.pairs;
+  sum_mm += *cut.mean_abs_error_mm;
+  if (change_mm > 0.0) ++result.worse;
+  if (change_mm > kHarmMm) ++result.harmed;
+}
+
+PathResult result_along(std::span<const TestedSeries> series, std::string_view name) {
+  PathResult result{.name = std::string(name), .is_simulated = !is_path_without_simulation(name)};
+  double sum_mm = 0.0;
+  for (const TestedSeries& specimens : series) {
+    for (const TestedSpecimen& specimen : specimens)
+      if (const PathCut* cut = specimen.find(name)) add_cut(specimen, *cut, result, sum_mm);
+  }
+  if (result.pairs > 0) result.mean_mm = sum_mm / static_cast<double>(result.pairs);
   return result;
 }
 
-PathResult result_along(const std::vector<Trial>& trials, std::string_view name) {
-  const bool is_incise = name == kIncise;
-  const std::optional<RivalPath> path = is_incise ? std::nullopt : value_of<RivalPath>(name);
-  const TrialSummary summary = summary_of(trials, TrialRole::Test, path);
-  PathResult result{.name = std::string(name), .is_simulated = is_incise || !is_without_simulation(*path)};
-  result.pairs = summary.pairs;
-  if (summary.pairs > 0) result.mean_mm = summary.mean_after_mm;
-  result.worse = summary.worse;
-  result.uncut = summary.uncorrected;
-  return result;
+/// Errors along two paths of the specimens that both closed.
+struct PairedErrors {
+  std::vector<double> first, second;
+  std::vector<std::vector<double>> differences;  ///< by series: second less first
+};
+
+PairedErrors paired_errors(std::span<const TestedSeries> series, std::string_view first, std::string_view second) {
+  PairedErrors errors;
+  for (const TestedSeries& specimens : series) {
+    std::vector<double>& differences = errors.differences.emplace_back();
+    for (const TestedSpecimen& specimen : specimens) {
+      const std::optional<double> of_first = error_along(specimen, first), of_second = error_along(specimen, second);
+      if (!of_first || !of_second) continue;
+      errors.first.push_back(*of_first);
+      errors.second.push_back(*of_second);
+      differences.push_back(*of_second - *of_first);
+    }
+  }
+  return errors;
+}
+
+/// Of the mean difference. Specimens of one series share a calibration and an offset of the hand-eye transform, so that
+/// with several series whole ones are drawn anew.
+std::optional<Interval> interval_of(const PairedErrors& errors) {
+  if (errors.differences.size() > 1) return cluster_bootstrap(errors.differences);
+  return paired_t_test(errors.first, errors.second).confidence;
 }
 
 /// Against the best path, specimen by specimen.
-void compare(const std::vector<Trial>& trials, std::string_view best, PathResult& result) {
-  std::vector<double> theirs, mine;
-  for (const Trial& trial : trials) {
-    const std::optional<double> of_best = error_along(trial, best), of_this = error_along(trial, result.name);
-    if (!of_best || !of_this) continue;
-    theirs.push_back(*of_best);
-    mine.push_back(*of_this);
-  }
-  result.compared = mine.size();
-  if (mine.empty()) return;
-  result.compared_mean_mm = moments_of(mine).mean;
+void compare(std::span<const TestedSeries> series, std::string_view best, PathResult& result) {
+  const PairedErrors errors = paired_errors(series, best, result.name);
+  result.compared = errors.first.size();
+  if (errors.first.empty()) return;
+  result.compared_mean_mm = moments_of(errors.second).mean;
   if (result.name == best) return;
-  const TTest test = paired_t_test(theirs, mine);
-  result.difference_mm = test.difference;
-  result.confidence = test.confidence;
+  result.difference_mm = *result.compared_mean_mm - moments_of(errors.first).mean;
+  result.confidence = interval_of(errors);
 }
 
 /// See PathComparison. @param names  of the paths without a simulated cut.
-std::optional<std::string> best_of(const std::vector<Trial>& trials, const std::vector<std::string>& names) {
+std::optional<std::string> best_of(std::span<const TestedSeries> series, const std::vector<std::string>& names) {
   std::vector<double> sums(names.size(), 0.0);
   bool is_any_common = false;
-  for (const Trial& trial : trials) {
+  const auto add = [&](const TestedSpecimen& specimen) {
     std::vector<double> errors;
     for (const std::string& name : names) {
-      if (const std::optional<double> error = error_along(trial, name)) errors.push_back(*error);
+      if (const std::optional<double> error = error_along(specimen, name)) errors.push_back(*error);
     }
-    if (errors.size() != names.size()) continue;
+    if (errors.size() != names.size()) return;
     is_any_common = true;
     for (std::size_t i = 0; i < names.size(); ++i) sums[i] += errors[i];
-  }
+  };
+  for (const TestedSeries& specimens : series)
+    for (const TestedSpecimen& specimen : specimens) add(specimen);
   if (!is_any_common) return std::nullopt;
   return names[static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin())];
+}
+
+/// As planned, and every other path that a specimen was to be cut along, in order.
+std::vector<std::string> paths_of(std::span<const TestedSeries> series) {
+  std::vector<std::string> names{std::string(kAsPlannedPath)};
+  const auto add = [&names](const TestedSpecimen& specimen) {
+    for (const PathCut& cut : specimen.cuts)
+      if (std::find(names.begin(), names.end(), cut.path) == names.end()) names.push_back(cut.path);
+  };
+  for (const TestedSeries& specimens : series)
+    for (const TestedSpecimen& specimen : specimens) add(specimen);
+  return names;
 }
 
 }  // namespace
@@ -93,6 +129,9 @@ void describe(Visitor& v, PathResult& r) {
   v("name", r.name, "Of the path.");
   v({"mean_mm", "Mean over specimens of the photographs' mean |error|.", "mm"}, r.mean_mm);
   v("worse", r.worse, "Specimens whose error grew, or whose ring opened.");
+  v("harmed", r.harmed, "Of these: by more than 0.1 mm, or opened.");
+  v("closed", r.closed, "Cuts whose ring truly closed.");
+  v("close_margins", r.close_margins, "Of these: with less tissue beside the tumour than the close margin somewhere.");
   v("pairs", r.pairs, "Specimens with a closed ring along this path and as planned.");
   v("uncut", r.uncut, "Specimens that were cut as planned, and not along this path.");
   v("simulated", r.is_simulated, "Whether a simulated cut takes part in the path.");
@@ -102,32 +141,56 @@ void describe(Visitor& v, PathResult& r) {
   describe_interval(v, {"confidence_mm", "Of the difference, 95 %, paired by specimen.", "mm"}, r.confidence);
 }
 
+void describe(Visitor& v, PathPair& p) {
+  v("first", p.first, "A path.");
+  v("second", p.second, "Another.");
+  v("compared", p.compared, "Specimens with closed rings along both, in the photographs.");
+  v({"first_mm", "Of these: mean over specimens of the mean |error|.", "mm"}, p.first_mm);
+  v({"second_mm", "Likewise.", "mm"}, p.second_mm);
+  v.derived("difference_mm", p.difference_mm(), "The second less the first.");
+  describe_interval(v, {"confidence_mm", "Of that difference, 95 %.", "mm"}, p.confidence);
+  v("closed", p.closed, "Specimens whose rings truly closed along both.");
+  v("close_margins_first", p.close_margins_first, "Of these: closer to the edge than the close margin somewhere.");
+  v("close_margins_second", p.close_margins_second, "Likewise, along the second.");
+}
+
 const PathResult* PathComparison::find(std::string_view name) const {
   const auto place = std::find_if(paths.begin(), paths.end(), [name](const PathResult& p) { return p.name == name; });
   return place != paths.end() ? &*place : nullptr;
 }
 
-PathComparison compare_paths(const std::vector<Trial>& trials) {
+PathComparison compare_paths(std::span<const TestedSeries> series) {
   PathComparison comparison;
-  comparison.paths.push_back(planned_result(trials));
-  const auto add = [&](std::string_view name) {
-    const bool is_asked = std::any_of(trials.begin(), trials.end(), [name](const Trial& trial) {
-      return trial.role == TrialRole::Test && cut_along(trial, name) != nullptr;
-    });
-    if (is_asked) comparison.paths.push_back(result_along(trials, name));
-  };
-  for (const std::string_view name : kRivalPathNames) {
-    if (value_of<RivalPath>(name) == RivalPath::Hybrid) add(kIncise);
-    add(name);
-  }
+  for (const std::string& name : paths_of(series)) comparison.paths.push_back(result_along(series, name));
   std::vector<std::string> without;
   for (const PathResult& path : comparison.paths)
     if (!path.is_simulated) without.push_back(path.name);
   if (without.size() == 1) return comparison;  // the planned path alone is no rival
-  comparison.best_without_simulation = best_of(trials, without);
+  comparison.best_without_simulation = best_of(series, without);
   if (!comparison.best_without_simulation) return comparison;
-  for (PathResult& path : comparison.paths) compare(trials, *comparison.best_without_simulation, path);
+  for (PathResult& path : comparison.paths) compare(series, *comparison.best_without_simulation, path);
   return comparison;
+}
+
+PathPair compare_two(std::span<const TestedSeries> series, std::string_view first, std::string_view second) {
+  PathPair pair{.first = std::string(first), .second = std::string(second)};
+  for (const TestedSeries& specimens : series) {
+    for (const TestedSpecimen& specimen : specimens) {
+      const PathCut* one = specimen.find(first);
+      const PathCut* other = specimen.find(second);
+      if (one == nullptr || other == nullptr || !one->least_margin_mm || !other->least_margin_mm) continue;
+      ++pair.closed;
+      if (*one->least_margin_mm < Case{}.close_margin_mm) ++pair.close_margins_first;
+      if (*other->least_margin_mm < Case{}.close_margin_mm) ++pair.close_margins_second;
+    }
+  }
+  const PairedErrors errors = paired_errors(series, first, second);
+  pair.compared = errors.first.size();
+  if (errors.first.empty()) return pair;
+  pair.first_mm = moments_of(errors.first).mean;
+  pair.second_mm = moments_of(errors.second).mean;
+  pair.confidence = interval_of(errors);
+  return pair;
 }
 
 nlohmann::ordered_json paths_json(const PathComparison& comparison) {

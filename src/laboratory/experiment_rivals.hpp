@@ -1,11 +1,14 @@
 #pragma once
 
-#include "laboratory/experiment_tables.hpp"
+#include "laboratory/tested_specimen.hpp"
 
 #include <incise/evaluation/t_tests.hpp>
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace incise::laboratory {
@@ -17,11 +20,14 @@ struct PathResult {
   std::size_t pairs = 0;          ///< specimens with a closed ring along this path and as planned
   std::optional<double> mean_mm;  ///< of these: mean over specimens of the mean |error|
   std::size_t worse = 0;          ///< specimens whose error grew, or whose ring opened
+  std::size_t harmed = 0;         ///< of these: by more than 0.1 mm, or opened
+  std::size_t closed = 0;         ///< cuts whose ring truly closed
+  std::size_t close_margins = 0;  ///< of these: with less tissue beside the tumour than the close margin somewhere
   std::size_t uncut = 0;          ///< specimens that were cut as planned, and not along this path: a step refused it
   std::size_t compared = 0;       ///< of the pairs: those with a closed ring along the best path, too
   std::optional<double> compared_mean_mm;  ///< of these: as mean_mm
   std::optional<double> difference_mm;     ///< of these: mean less that along the best path; negative: better
-  /// Of that difference, 95 %, paired by specimen; absent: fewer than 2, or no spread.
+  /// Of that difference, 95 %, see compare_paths; absent: fewer than 2, or no spread.
   std::optional<Interval> confidence;
 };
 void describe(Visitor& v, PathResult& r);
@@ -34,10 +40,33 @@ struct PathComparison {
   std::optional<std::string> best_without_simulation;
   [[nodiscard]] const PathResult* find(std::string_view name) const;
 };
+/// The tested specimens of one series: they share a calibration and, on the second bench, a hand-eye offset.
+using TestedSeries = std::vector<TestedSpecimen>;
+
 /// A benefit is claimed over the best path without a simulated cut, chosen after the fact: the choice favours that
-/// rival. Differences are paired by specimen; their interval is Student's, over specimens. Paths without a simulated
-/// cut are never refused by a simulation, the others may be: see `uncut`.
-[[nodiscard]] PathComparison compare_paths(const std::vector<Trial>& trials);
+/// rival. Differences are paired by specimen; their interval is Student's over the specimens of one series, or that of
+/// a bootstrap that draws whole series anew. Paths without a simulated cut are never refused by a simulation, the
+/// others may be: see `uncut`.
+[[nodiscard]] PathComparison compare_paths(std::span<const TestedSeries> series);
+[[nodiscard]] inline PathComparison compare_paths(const TestedSeries& specimens) {
+  return compare_paths(std::span(&specimens, 1));
+}
+
+/// Two paths of the same specimens.
+struct PathPair {
+  std::string first, second;
+  std::size_t compared = 0;                   ///< specimens with closed rings along both, in the photographs
+  std::optional<double> first_mm, second_mm;  ///< of these: mean over specimens of the mean |error|
+  std::optional<Interval> confidence;         ///< of the difference, as in compare_paths
+  std::size_t closed = 0;                     ///< specimens whose rings truly closed along both
+  std::size_t close_margins_first = 0, close_margins_second = 0;  ///< of these
+  [[nodiscard]] std::optional<double> difference_mm() const {
+    return first_mm && second_mm ? std::optional(*second_mm - *first_mm) : std::nullopt;
+  }
+};
+void describe(Visitor& v, PathPair& p);
+[[nodiscard]] PathPair compare_two(std::span<const TestedSeries> series, std::string_view first,
+                                   std::string_view second);
 
 /// `{as_planned: {…}, constant: {…}, …}`
 [[nodiscard]] nlohmann::ordered_json paths_json(const PathComparison& comparison);

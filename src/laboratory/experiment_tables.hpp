@@ -31,10 +31,12 @@ enum class RivalPath {
   Uncalibrated,     ///< corrected with the default tool and no bias
   Hybrid,           ///< corrected, with what the photographs say beyond the simulation by direction
   Learned,          ///< corrected, with what they forecast for this ring beyond the simulation
+  Robust,           ///< the path of least expected error over all that the calibration leaves possible
 };
-inline constexpr std::array<std::string_view, 9> kRivalPathNames{
-    "constant", "profile", "profile_smoothed", "profile_in_view", "photographs", "paper_pass", "incise_uncalibrated",
-    "hybrid",   "learned"};
+inline constexpr std::array<std::string_view, 10> kRivalPathNames{
+    "constant",    "profile",    "profile_smoothed",    "profile_in_view",
+    "photographs", "paper_pass", "incise_uncalibrated", "hybrid",
+    "learned",     "robust"};
 [[nodiscard]] constexpr Names names_of(RivalPath) {
   return kRivalPathNames;
 }

@@ -7,8 +7,8 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/transform_json.hpp>
+#include <incise/planning/robust_compensation.hpp>
 #include <incise/steps/camera_steps.hpp>
-#include <incise/steps/case_steps.hpp>
 #include <incise/steps/cut_steps.hpp>
 #include <incise/steps/robot_steps.hpp>
 #include <incise/steps/tissue_steps.hpp>
@@ -327,6 +327,30 @@ SecondCut SpecimenTrial::cut_again(const std::filesystem::path& file, const std:
   TrialCut none;
   none.ended_at = refusal_of(tag + "_compensate", corrected);
   return {corrected.result, none};
+}
+
+TrialCut SpecimenTrial::cut_robustly(const std::filesystem::path& file, const steps::CalibratedRequest& known,
+                                     const std::filesystem::path& folder, const std::string& tag) {
+  const std::filesystem::path path = folder / "robust/path.json";
+  std::vector<std::string> words{"compensate", file.string(), "--robust", "--calibration", known.calibration.string()};
+  if (known.stretch_force_n) words.insert(words.end(), {"--stretch-force-n", text(*known.stretch_force_n)});
+  words.insert(words.end(), {"-o", folder.string()});
+  const StepAnswer found =
+      steps_.run({tag + "_compensate",
+                  words,
+                  {file, at("tumor.csv"), at("lab/ct"), known.calibration},
+                  {path},
+                  [=](const steps::StepContext& context) {
+                    return steps::compensate_case(
+                        {read_case_with_inputs(file), folder, {}},
+                        steps::RobustRequest{.calibration = steps::read_calibration_input(known)}, context);
+                  }});
+  // The default correction of the same run may be refused, and this path may still be sound.
+  const StudyJson robust = found.result.is_object() ? found.result.value("robust", StudyJson()) : StudyJson();
+  if (robust.is_object() && robust.at("outcome") == to_string(RobustOutcome::Met)) return cut(path, tag);
+  TrialCut none;
+  none.ended_at = found.end == StepEnd::Done ? tag + "_compensate: not found" : refusal_of(tag + "_compensate", found);
+  return none;
 }
 
 }  // namespace incise::laboratory

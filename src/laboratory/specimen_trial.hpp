@@ -3,6 +3,7 @@
 #include "laboratory/experiment_steps.hpp"
 
 #include <incise/core/monitor.hpp>
+#include <incise/steps/case_steps.hpp>
 #include <incise/workflow/case.hpp>
 
 #include <filesystem>
@@ -77,6 +78,9 @@ class SpecimenTrial {
   /// @param is_simulated  the correction is verified in simulation; else no simulated cut takes part.
   [[nodiscard]] SecondCut cut_again(const std::filesystem::path& file, const std::filesystem::path& folder,
                                     const std::string& tag, bool is_simulated = true);
+  /// The path of least expected error over all that a calibration leaves possible, and a cut along it.
+  [[nodiscard]] TrialCut cut_robustly(const std::filesystem::path& file, const steps::CalibratedRequest& known,
+                                      const std::filesystem::path& folder, const std::string& tag);
   /// Writes another case of the same specimen into its folder. @returns the file.
   [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const CaseVariant& variant) const;
   /// Runs one more step in this specimen's folder, whose refusal is an answer.

@@ -115,12 +115,12 @@ class StudyTest(CommandTest):
         self.assertEqual(result["pairs"], 1)
         self.assertLess(result["mean_after_mm"], result["mean_before_mm"])
         without = ["constant", "profile", "profile_smoothed", "profile_in_view", "photographs"]
-        rivals = [*without, "paper_pass", "incise_uncalibrated", "hybrid", "learned"]
+        rivals = [*without, "paper_pass", "incise_uncalibrated", "hybrid", "learned", "robust"]
         self.assertEqual([row["cut"] for row in result["table_2"]],
                          ["planned", "planned", "corrected", *rivals, "planned", "corrected"])
-        self.assertEqual([row["advice"] is None for row in result["table_2"]], [True] + 13 * [False])
-        self.assertEqual([row["kind"] for row in result["table_2"]], 12 * [None] + ["stiff", "stiff"])
-        self.assertEqual(list(result["rivals"]), ["as_planned", *rivals[:7], "incise", "hybrid", "learned"])
+        self.assertEqual([row["advice"] is None for row in result["table_2"]], [True] + 14 * [False])
+        self.assertEqual([row["kind"] for row in result["table_2"]], 13 * [None] + ["stiff", "stiff"])
+        self.assertEqual(list(result["rivals"]), ["as_planned", *rivals[:7], "incise", "hybrid", "learned", "robust"])
         self.assertIn(result["best_without_simulation"], without)
         best = result["rivals"][result["best_without_simulation"]]
         self.assertEqual(best["mean_mm"], min(result["rivals"][name]["mean_mm"] for name in without))
@@ -180,11 +180,11 @@ class StudyTest(CommandTest):
         for entry in held["specimens"]:
             for cut in ("planned", "corrected"):
                 truth = json.loads((self.folder / "study" / "truth" / f"{entry['specimen']}_{cut}" / "cut_truth.json").read_text())
-                self.assertEqual(entry[f"true_{cut}_mm"], truth["mean_abs_error_mm"])
-            self.assertEqual(entry["is_worse"], entry["true_corrected_mm"] > entry["true_planned_mm"])
+                self.assertEqual(entry[cut]["true_mm"], truth["mean_abs_error_mm"])
+            self.assertEqual(entry["is_worse"], entry["corrected"]["true_mm"] > entry["planned"]["true_mm"])
             self.assertIn("p_worse_without_pull", entry)
             truth = json.loads((self.folder / "study" / "truth" / f"{entry['specimen']}_withheld" / "cut_truth.json").read_text())
-            self.assertEqual(entry["true_withheld_mm"], truth["mean_abs_error_mm"])
+            self.assertEqual(entry["withheld"]["true_mm"], truth["mean_abs_error_mm"])
         self.assertEqual(held["worse"], sum(entry["is_worse"] for entry in held["specimens"]))
         self.assertEqual(held["auc"] is None, held["worse"] in (0, 2))
         self.assertEqual(held["close_margin"]["cuts"], 4)

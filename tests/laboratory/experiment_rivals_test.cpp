@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,25 +18,25 @@ using RivalJson = nlohmann::ordered_json;
 using ::testing::HasSubstr;
 
 /// A cut with this mean error. @param error_mm  absent: its ring stayed open.
-TrialCut cut_with(std::optional<double> error_mm) {
-  TrialCut cut{.is_made = true};
-  if (error_mm) cut.measured = MeasuredCut{{}, {{"abs_error_mm", {{"mean", *error_mm}}}}};
-  return cut;
+PathCut cut_with(std::string path, std::optional<double> error_mm) {
+  return {.path = std::move(path), .end = error_mm ? PathEnd::Measured : PathEnd::Open, .mean_abs_error_mm = error_mm};
 }
 
-Trial test_specimen(double planned_mm, double corrected_mm,
-                    const std::vector<std::pair<RivalPath, std::optional<double>>>& rivals) {
-  Trial trial{.name = "S", .role = TrialRole::Test};
-  trial.planned = cut_with(planned_mm);
-  trial.corrected = cut_with(corrected_mm);
-  for (const auto& [path, error_mm] : rivals) trial.rivals.push_back({path, cut_with(error_mm)});
-  return trial;
+TestedSpecimen specimen_of(std::vector<PathCut> cuts) {
+  return {.name = "S", .unlike = {}, .cuts = std::move(cuts)};
 }
 
-std::vector<Trial> three_specimens() {
-  return {test_specimen(1.8, 0.5, {{RivalPath::Constant, 0.6}, {RivalPath::Profile, 0.3}, {RivalPath::Hybrid, 0.2}}),
-          test_specimen(1.6, 0.4, {{RivalPath::Constant, 0.5}, {RivalPath::Profile, 0.4}, {RivalPath::Hybrid, 0.3}}),
-          test_specimen(1.7, 0.6, {{RivalPath::Constant, 1.9}, {RivalPath::Profile, 0.2}, {RivalPath::Hybrid, 0.2}})};
+PathCut& at(TestedSpecimen& specimen, std::string_view path) {
+  return *std::find_if(specimen.cuts.begin(), specimen.cuts.end(), [&](const PathCut& c) { return c.path == path; });
+}
+
+TestedSeries three_specimens() {
+  const auto specimen = [](double planned_mm, double constant_mm, double profile_mm, double incise_mm,
+                           double hybrid_mm) {
+    return specimen_of({cut_with("as_planned", planned_mm), cut_with("constant", constant_mm),
+                        cut_with("profile", profile_mm), cut_with("incise", incise_mm), cut_with("hybrid", hybrid_mm)});
+  };
+  return {specimen(1.8, 0.6, 0.3, 0.5, 0.2), specimen(1.6, 0.5, 0.4, 0.4, 0.3), specimen(1.7, 1.9, 0.2, 0.6, 0.2)};
 }
 
 TEST(ComparePaths, HoldsEveryPathAgainstTheBestWithoutSimulation) {
@@ -58,10 +61,10 @@ TEST(ComparePaths, HoldsEveryPathAgainstTheBestWithoutSimulation) {
 }
 
 TEST(ComparePaths, CountsOpenRingsAsWorseAndComparesClosedPairsAlone) {
-  std::vector<Trial> trials = three_specimens();
-  trials[0].rivals[1].cut = cut_with(std::nullopt);
-  trials[1].corrected = {};  // refused
-  const PathComparison paths = compare_paths(trials);
+  TestedSeries specimens = three_specimens();
+  at(specimens[0], "profile") = cut_with("profile", std::nullopt);
+  at(specimens[1], "incise") = {.path = "incise"};  // refused
+  const PathComparison paths = compare_paths(specimens);
   EXPECT_EQ(*paths.best_without_simulation, "profile");
   EXPECT_EQ(paths.find("profile")->worse, 1U);
   EXPECT_EQ(paths.find("profile")->pairs, 2U);
@@ -73,31 +76,73 @@ TEST(ComparePaths, CountsOpenRingsAsWorseAndComparesClosedPairsAlone) {
 }
 
 TEST(ComparePaths, ChooseTheBestOverTheSpecimensThatAllOfThemClosed) {
-  std::vector<Trial> trials = three_specimens();
+  TestedSeries specimens = three_specimens();
   // By its own mean the constant offset would win: it closed on the easiest specimen alone, and lost to the profile
   // there.
-  trials[0].rivals[0].cut = cut_with(std::nullopt);
-  trials[2].rivals[0].cut = cut_with(std::nullopt);
-  trials[1].rivals[0].cut = cut_with(0.25);
-  trials[1].rivals[1].cut = cut_with(0.20);
-  trials[0].rivals[1].cut = cut_with(0.9);
-  EXPECT_EQ(*compare_paths(trials).best_without_simulation, "profile");
+  at(specimens[0], "constant") = cut_with("constant", std::nullopt);
+  at(specimens[2], "constant") = cut_with("constant", std::nullopt);
+  at(specimens[1], "constant") = cut_with("constant", 0.25);
+  at(specimens[1], "profile") = cut_with("profile", 0.20);
+  at(specimens[0], "profile") = cut_with("profile", 0.9);
+  EXPECT_EQ(*compare_paths(specimens).best_without_simulation, "profile");
   // Where every rival is worse than the planned path, that is what has to be beaten.
-  for (Trial& trial : trials) trial.rivals[0].cut = trial.rivals[1].cut = cut_with(2.5);
-  EXPECT_EQ(*compare_paths(trials).best_without_simulation, "as_planned");
+  for (TestedSpecimen& specimen : specimens)
+    for (const char* path : {"constant", "profile"}) at(specimen, path) = cut_with(path, 2.5);
+  EXPECT_EQ(*compare_paths(specimens).best_without_simulation, "as_planned");
 }
 
 TEST(ComparePaths, ClaimNothingWithoutARival) {
-  std::vector<Trial> trials = three_specimens();
-  for (Trial& trial : trials) trial.rivals.clear();
-  trials.push_back({.name = "outside", .role = TrialRole::Outside});
-  const PathComparison paths = compare_paths(trials);
+  TestedSeries specimens = three_specimens();
+  for (TestedSpecimen& specimen : specimens) specimen.cuts = {at(specimen, "as_planned"), at(specimen, "incise")};
+  const PathComparison paths = compare_paths(specimens);
   EXPECT_FALSE(paths.best_without_simulation);
   EXPECT_EQ(claim_of(paths, "incise"), "");
   const RivalJson json = paths_json(paths);
   EXPECT_EQ(json.size(), 2U);
   EXPECT_TRUE(json.at("incise").at("difference_mm").is_null());
   EXPECT_EQ(json.at("as_planned").at("pairs"), 3);
+}
+
+TEST(ComparePaths, CountsHarmAndCloseMargins) {
+  TestedSeries specimens = three_specimens();
+  at(specimens[0], "incise").mean_abs_error_mm = 1.85;  // worse by 0.05 mm
+  at(specimens[1], "incise").mean_abs_error_mm = 1.75;  // by 0.15 mm
+  at(specimens[0], "incise").least_margin_mm = 2.1;
+  at(specimens[1], "incise").least_margin_mm = 2.3;
+  const PathComparison paths = compare_paths(specimens);
+  EXPECT_EQ(paths.find("incise")->worse, 2U);
+  EXPECT_EQ(paths.find("incise")->harmed, 1U);
+  EXPECT_EQ(paths.find("incise")->closed, 2U) << "the third one's truth is not known";
+  EXPECT_EQ(paths.find("incise")->close_margins, 1U);
+}
+
+TEST(ComparePaths, DrawsWholeSeriesAnewWhereThereAreSeveral) {
+  const TestedSeries three = three_specimens();
+  TestedSeries others = three;
+  for (TestedSpecimen& specimen : others) *at(specimen, "incise").mean_abs_error_mm += 0.4;
+  const std::vector<TestedSeries> both{three, others};
+  const PathComparison paths = compare_paths(both);
+  const PathResult& incise = *paths.find("incise");
+  EXPECT_EQ(incise.compared, 6U);
+  EXPECT_NEAR(*incise.difference_mm, 0.4, 1e-12);
+  EXPECT_NEAR(incise.confidence->low, 0.2, 1e-12) << "both draws of the first series";
+  EXPECT_NEAR(incise.confidence->high, 0.6, 1e-12);
+}
+
+TEST(CompareTwo, HoldsOnePathAgainstAnotherOnTheSpecimensThatBothClosed) {
+  TestedSeries specimens = three_specimens();
+  at(specimens[0], "hybrid") = cut_with("hybrid", std::nullopt);
+  for (const std::size_t i : {1U, 2U}) {
+    at(specimens[i], "incise").least_margin_mm = 2.0;
+    at(specimens[i], "hybrid").least_margin_mm = i == 1 ? 2.0 : 3.0;
+  }
+  const PathPair pair = compare_two(std::span(&specimens, 1), "incise", "hybrid");
+  EXPECT_EQ(pair.compared, 2U);
+  EXPECT_NEAR(*pair.difference_mm(), -0.25, 1e-12) << "0.3 - 0.4 and 0.2 - 0.6";
+  EXPECT_EQ(pair.closed, 2U);
+  EXPECT_EQ(pair.close_margins_first, 2U);
+  EXPECT_EQ(pair.close_margins_second, 1U);
+  EXPECT_FALSE(compare_two(std::span(&specimens, 1), "incise", "robust").difference_mm());
 }
 
 }  // namespace
