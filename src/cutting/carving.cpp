@@ -608,7 +608,7 @@ void touch_surface(const TissueModel& model, const CutSettings& settings, const 
 /// is full now, ascending.
 std::vector<TetId> count_step(const TissueModel& model, const CutSettings& settings, CutState& state,
                               CutStepReport& report) {
-  const double unit = settings.dwell_rate_per_s() * settings.reference_step_s;  // 1 / dullness at the reference power
+  const double unit = settings.dwell_rate_per_s() * settings.reference_step_s;  // 1 / dullness at the reference energy
   std::vector<TetId> due;
   for (const Bond& bond : state.bonds) {
     double& dose = state.dose[bond.tet.index()];

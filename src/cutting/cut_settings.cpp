@@ -15,17 +15,26 @@ constexpr double kMostResidualTolerance = 0.3;    // beyond it a step leaves mor
 
 }  // namespace
 
-double CutSettings::dwell_rate_per_s() const { return std::pow(power_w / reference_power_w, power_exponent) / dwell_s(); }
+double CutSettings::relative_energy() const {
+  const double area_rate = real_speed_mm_s.value_or(reference_real_speed_mm_s) * depth_mm.value_or(reference_depth_mm);
+  return power_w / reference_power_w * (reference_real_speed_mm_s * reference_depth_mm / area_rate);
+}
+
+double CutSettings::dwell_rate_per_s() const {
+  return std::pow(relative_energy(), power_exponent) / dwell_s();
+}
 
 std::vector<Problem> validate(const CutSettings& s, double tool_diameter_mm) {
   std::vector<Problem> violations = problems_of(s);
-  if (s.dullness > 0.0 && s.reference_step_s > 0.0 && s.power_w > 0.0 && s.reference_power_w > 0.0) {
+  if (s.dullness > 0.0 && s.reference_step_s > 0.0 && s.relative_energy() > 0.0) {
     const double contact_s = 1.0 / s.dwell_rate_per_s();
     if (!(contact_s <= kMaxContactS)) {
       violations.push_back({"power_w",
-                            fmt::format("{} with power_exponent {}, dullness {} and reference_step_s {}: {:.3g} s of "
-                                        "contact until tissue is cut",
-                                        s.power_w, s.power_exponent, s.dullness, s.reference_step_s, contact_s),
+                            fmt::format("{} at {} mm/s and a depth of {} mm with power_exponent {}, dullness {} and "
+                                        "reference_step_s {}: {:.3g} s of contact until tissue is cut",
+                                        s.power_w, s.real_speed_mm_s.value_or(s.reference_real_speed_mm_s),
+                                        s.depth_mm.value_or(s.reference_depth_mm), s.power_exponent, s.dullness,
+                                        s.reference_step_s, contact_s),
                             fmt::format("at most {} s", kMaxContactS)});
     }
   }

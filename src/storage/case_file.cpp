@@ -103,7 +103,9 @@ void require_consistent(const CaseFile& file, const std::string& name) {
   CutSettings cut = c.cut;
   refuse("cut", validate(cut, 2.0 * radius_mm(c.tool)), "usable cut settings");
   cut.power_w = c.plan.power_w;
-  refuse("plan", validate(cut, 2.0 * radius_mm(c.tool)), "a power at which tissue is cut");
+  cut.real_speed_mm_s = c.plan.speed_mm_s;
+  cut.depth_mm = c.plan.depth_mm;
+  refuse("plan", validate(cut, 2.0 * radius_mm(c.tool)), "power, speed and depth at which tissue is cut");
   if (c.plan.kind == PlanKind::Ring && c.plan.lateral_margin_mm <= radius_mm(c.tool)) {
     throw CaseError(name, "plan.lateral_margin_mm", fmt::format("{} mm", c.plan.lateral_margin_mm),
                     fmt::format("more than the electrode's radius of {} mm", radius_mm(c.tool)));

@@ -169,8 +169,7 @@ class CalibrationRunner {
       const Case settings = with_setting(subjects_[one.specimen].of->settings, run.setting);
       ToolPath path = held.back()->followed;
       path.tumor_edge = held.back()->plan.tumor_edge;
-      tasks.push_back(
-          {&held.back()->model, &held.back()->stretched.state, {incision_settings(settings), std::move(path)}});
+      tasks.push_back({&held.back()->model, &held.back()->stretched.state, {incision_settings(settings, path), path}});
     }
     std::size_t done = 0;
     simulate_incisions(tasks, workers_, monitor_, [&](std::size_t i, IncisionJobResult result) {

@@ -84,7 +84,7 @@ std::string CalibrationBody::digest_of_all() const {
       .add(settings.tumor_configuration);
   key.add(settings.surface_tolerance_mm).add(settings.close_margin_mm).add(drawn_edge_);
   key.add(given_path_ ? std::optional(unmarked(*given_path_)) : std::nullopt)
-      .add(incision_settings(with_setting(settings, none)));
+      .add(incision_settings(with_setting(settings, none), given_path_.value_or(*study_.plan)));
   return key.digest();
 }
 

@@ -59,10 +59,10 @@ LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const Too
   return errors;
 }
 
-/// Of the real tool, waypoint by waypoint.
-double mean_speed_mm_s(const ToolPath& path) {
+/// Over the waypoints of a path.
+double mean_of(const ToolPath& path, double Waypoint::*field) {
   double sum = 0.0;
-  for (const Waypoint& waypoint : path.waypoints) sum += waypoint.speed_mm_s;
+  for (const Waypoint& waypoint : path.waypoints) sum += waypoint.*field;
   return sum / static_cast<double>(path.waypoints.size());
 }
 
@@ -133,14 +133,13 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
   return cut;
 }
 
-IncisionSettings incision_settings(const Case& settings) {
+IncisionSettings incision_settings(const Case& settings, const ToolPath& path) {
   IncisionSettings incision;
   incision.cut = settings.cut;
   incision.cut.power_w = settings.plan.power_w;
-  if (is_viscous(settings.material)) {
-    incision.cut.real_speed_mm_s = settings.plan.speed_mm_s;
-    incision.time_since_stretch_s = settings.time_since_stretch_s;
-  }
+  incision.cut.real_speed_mm_s = mean_of(path, &Waypoint::speed_mm_s);
+  incision.cut.depth_mm = mean_of(path, &Waypoint::depth_mm);
+  if (is_viscous(settings.material)) incision.time_since_stretch_s = settings.time_since_stretch_s;
   incision.tool = settings.tool;
   incision.approach = settings.plan.approach.normalized();
   incision.frames = settings.frames;
@@ -148,8 +147,7 @@ IncisionSettings incision_settings(const Case& settings) {
 }
 
 IncisionSettings incision_settings_for(const Case& settings, const ToolPath& path, const TriMesh& tumor_surface) {
-  IncisionSettings incision = incision_settings(settings);
-  if (incision.cut.real_speed_mm_s) incision.cut.real_speed_mm_s = mean_speed_mm_s(path);
+  IncisionSettings incision = incision_settings(settings, path);
   incision.tumor_surface = tumor_surface;
   add_layers_down_to(path, incision.approach, incision.layer_depths_mm);
   return incision;

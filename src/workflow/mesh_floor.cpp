@@ -28,7 +28,7 @@ TissueModel held_everywhere(const TissueModel& model, const TissueState& stretch
 
 CutSettings without_drag(const Case& settings) {
   CutSettings cut = settings.cut;
-  cut.power_w = cut.reference_power_w;
+  cut.power_exponent = 0.0;
   cut.bond_stiffness_kpa_mm2 = 0.0;
   cut.hold_per_mm2 = 0.0;
   cut.tear_energy_kpa.reset();
@@ -67,7 +67,6 @@ std::optional<double> mesh_floor_mm(const Case& settings, const TissueModel& mod
   const TissueModel held = held_everywhere(model, stretched);
   Case frozen = settings;
   frozen.cut = without_drag(settings);
-  frozen.plan.power_w = frozen.cut.reference_power_w;
   frozen.frames = 0;
   OwnStage stage(monitor);
   const SimulatedCut cut = cut_and_judge(frozen, held, rest_state(held), path, path, workers, stage);

@@ -189,7 +189,7 @@ class TissueCuts {
       with_edge.tumor_edge = body->plan.tumor_edge;
       tasks.push_back({&body->model,
                        &body->stretched.state,
-                       {incision_settings(with_setting(settings_, made[k].setting)), std::move(with_edge)}});
+                       {incision_settings(with_setting(settings_, made[k].setting), path), std::move(with_edge)}});
     }
     std::size_t done = 0;
     simulate_incisions(tasks, workers_, monitor_, [&](std::size_t i, IncisionJobResult result) {

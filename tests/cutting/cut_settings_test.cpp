@@ -117,5 +117,20 @@ TEST(CutSettings, TwiceThePowerCutsTwiceAsFastOrAsTheExponentSays) {
   EXPECT_NEAR(settings.dwell_rate_per_s(), 1.0 / 0.18, 1e-12);
 }
 
+TEST(CutSettings, WhatCutsIsTheEnergyOnAnAreaOfTheCut) {
+  CutSettings settings;
+  EXPECT_EQ(settings.relative_energy(), 1.0);
+  settings.real_speed_mm_s = 14.0;
+  settings.depth_mm = 2.5;
+  EXPECT_EQ(settings.relative_energy(), 1.0) << "twice as fast, half as deep";
+  settings.depth_mm = 5.0;
+  EXPECT_EQ(settings.relative_energy(), 0.5);
+  EXPECT_NEAR(settings.dwell_rate_per_s(), 0.5 / 0.18, 1e-12);
+  settings.power_w = 70.0;
+  EXPECT_EQ(settings.relative_energy(), 1.0) << "that much more power makes up for it";
+  settings.reference_real_speed_mm_s = 14.0;
+  EXPECT_EQ(settings.relative_energy(), 2.0);
+}
+
 }  // namespace
 }  // namespace incise

@@ -301,7 +301,7 @@ void try_variants(const std::string& where, const Finished& done, int count, Ran
       layer.is_closed = false;
       how = fmt::format("layer {} mm opened", layer.depth_mm);
     }
-    IncisionSettings incision = incision_settings(settings);
+    IncisionSettings incision = incision_settings(settings, *done.study.plan);
     incision.tumor_surface = tumor;
     variant.incision.kerf.deep_margin = deep_margin(variant.incision.kerf.body, variant.incision.kerf.depth, incision);
     variant.verdict = verdict_of_cut(settings, variant);

@@ -48,6 +48,8 @@ Case block_case() {
       FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}},
       DisplacedConstraint{BoxRegion{Box3(Vec3(-1, 31.9, 0.2), Vec3(33, 33, 7))}, Vec3(0.0, 0.2, 0.0)}};
   settings.plan.depth_mm = 3.0;
+  settings.cut.reference_depth_mm =
+      settings.plan.depth_mm;  // so that the pairs of the grid do here what they do in the paper
   settings.tool = Needle{.diameter_mm = 1.6};
   settings.cut.reach_mm = 0.4;
   settings.cut.advance_per_step_mm = 0.8;

@@ -40,11 +40,16 @@ struct CutSettings {
   double reference_step_s = 0.02;     ///< the time that one unit of dullness stands for, > 0
   double power_w = 35.0;              ///< of the electrode, > 0; a study takes that of its plan
   double reference_power_w = 35.0;    ///< power at which dullness is the required contact, > 0; the paper's (II-B.3)
-  double power_exponent = 1.0;        ///< contact cuts (power / reference power) to this times as fast, [0, 10]; 0: power has no effect
+  double reference_real_speed_mm_s = 7.0;  ///< speed of the real tool at which it is, > 0; the paper's (II-B.1)
+  double reference_depth_mm = 5.0;         ///< and depth of its tip, > 0; the paper's
+  double power_exponent = 1.0;  ///< contact cuts (energy per area of the cut / that of the reference) to this times as
+                                ///< fast, [0, 10]; 0: power, real speed and depth have no effect
   std::optional<double> tear_energy_kpa;  ///< work per rest volume at which held tissue tears, kPa (= µJ/mm³), > 0; none: it does not
   std::optional<double> slip_mm;      ///< tissue that the tool has left this far behind slips, > 0; none: never
-  /// Of the real tool, > 0: viscous tissue relaxes at its pace; a study takes that of its plan. Absent: speed_mm_s.
+  /// Of the real tool, > 0; a study takes that of its path. Absent: the reference, and viscous tissue relaxes at the
+  /// pace of the simulated tool.
   std::optional<double> real_speed_mm_s;
+  std::optional<double> depth_mm;     ///< of the tip, > 0; a study takes that of its path. Absent: the reference
   double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step; (0, the tool's diameter or thickness]
   double reach_mm = 0.25;             ///< a tet is in contact within the tool's radius + reach of its core, >= 0
   double bond_stiffness_kpa_mm2 = 1500.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag; finite meshes hold with less
@@ -60,9 +65,11 @@ struct CutSettings {
   double hold_per_mm2 = 50.0;  ///< pull on a point per volume, offset and shear modulus, 1/mm², >= 0: the layer that
                                ///< moves with the tool is 1/√ of it thick; 0: no drag
 
-  /// Contact time that removes a tet of the reference tissue at the reference power, s.
+  /// Contact time that removes a tet of the reference tissue at the reference energy, s.
   [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
-  /// Dose per second of contact with the reference tissue, 1/s: (P / P_ref)^n / (d τ₀).
+  /// Energy per area of the cut over that of the references: (P / P_ref) (u_ref h_ref) / (u h).
+  [[nodiscard]] double relative_energy() const;
+  /// Dose per second of contact with the reference tissue, 1/s: relative_energy()^m / (d τ₀).
   [[nodiscard]] double dwell_rate_per_s() const;
   /// How long a step of the simulated tool takes for the tissue, s.
   [[nodiscard]] double tissue_s(double step_s) const {
@@ -86,9 +93,15 @@ inline void describe_effect(Visitor& v, CutSettings& s) {
   v({"reference_step_s", "The time that one unit of dullness represents.", "s"}, s.reference_step_s, {0.0, 1.0, true});
   v.internal("power_w", s.power_w, "Of the electrode.", {0.0, 120.0, true});
   v({"reference_power_w", "Power for which dullness holds.", "W"}, s.reference_power_w, {0.0, 120.0, true});
+  v({"reference_real_speed_mm_s", "Speed of the real tool for which dullness holds.", "mm/s"},
+    s.reference_real_speed_mm_s, {0.1, 50.0});
+  v({"reference_depth_mm", "Depth of its tip for which dullness holds.", "mm"}, s.reference_depth_mm, {0.5, 50.0});
   v("power_exponent", s.power_exponent,
-    "Contact cuts (plan.power_w / reference_power_w) to this times as fast; 0: power has no effect.", {0.0, 10.0});
-  v.internal("real_speed_mm_s", s.real_speed_mm_s, "Of the real tool: viscous tissue relaxes at its pace.", kPositive);
+    "Contact cuts (energy per area of the cut, plan.power_w / (plan.speed_mm_s plan.depth_mm), relative to that of the "
+    "references) to this times as fast; 0: none of them has an effect.",
+    {0.0, 10.0});
+  v.internal("real_speed_mm_s", s.real_speed_mm_s, "Of the real tool.", kPositive);
+  v.internal("depth_mm", s.depth_mm, "Of the real tool's tip.", kPositive);
   v({"tear_energy_kpa", "Work of the tool per volume at which held tissue tears; absent: it does not.", "kPa"},
     s.tear_energy_kpa, {1e-3, 1e6});
   v({"slip_mm", "Tissue that the tool has left this far behind slips; absent: never.", "mm"}, s.slip_mm, kPositive);

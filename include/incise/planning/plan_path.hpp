@@ -56,7 +56,9 @@ inline void describe_course(Visitor& v, PlanSettings& s) {
   v({"depth_mm", "Of the tool's tip below the surface.", "mm"}, s.depth_mm, {0.5, 50.0});
   v({"speed_mm_s", "Of the real tool.", "mm/s"}, s.speed_mm_s, {0.1, 50.0});
   v({"power_w",
-     "Electrosurgical power: how fast contact cuts (cut.power_exponent), and how far beside the cut heat reaches.",
+     "Electrosurgical power: with speed and depth, how fast contact cuts (cut.power_exponent), and how far beside the "
+     "cut "
+     "heat reaches.",
      "W"},
     s.power_w, {0.0, 120.0, true});
   v.direction("approach", s.approach, "Into the tissue, as camera and surgeon look.");

@@ -143,9 +143,9 @@ struct RunOptions {
 /// @throws CaseError (field tumor.surface) for a vertex farther than surface_tolerance_mm from the tissue.
 [[nodiscard]] TriMesh tumor_in_stretched(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                          TriMesh surface, const std::optional<Contour>& drawn_edge);
-/// How a case's cut is simulated; the tumour's surface is not in it.
-[[nodiscard]] IncisionSettings incision_settings(const Case& settings);
-/// The same for a cut along a path: layers down to its deepest place. @param tumor_surface  closed, stretched
+/// How a case's cut along a path is simulated; the tumour's surface is not in it.
+[[nodiscard]] IncisionSettings incision_settings(const Case& settings, const ToolPath& path);
+/// The same with layers down to the path's deepest place. @param tumor_surface  closed, stretched
 /// tissue before the cut, mm; without triangles: not known.
 [[nodiscard]] IncisionSettings incision_settings_for(const Case& settings, const ToolPath& path,
                                                      const TriMesh& tumor_surface);
