@@ -8,6 +8,9 @@ namespace incise::cli {
 /// @param of  heading of the first column. @param result  `rivals` and `best_without_simulation`.
 void print_paths(const char* of, const nlohmann::ordered_json& result);
 
+/// What photographs are worth, without and with simulation. @param curve  empty: nothing.
+void print_learning(const nlohmann::ordered_json& curve);
+
 /// How the advice held against what happened. @param advice  that of an experiment, or of several; null: nothing.
 void print_advice(const nlohmann::ordered_json& advice);
 

@@ -145,12 +145,17 @@ int pool(const CommonOptions& options, const std::vector<std::filesystem::path>&
   print_paths("of these, unlike the calibration's", result.at("unlike"));
   print_paths("of these, like the calibration's", result.at("like"));
   const auto& robust = result.at("robust_against_default");
-  if (robust.at("difference_mm").is_number())
-    fmt::print("{:<34} {:+.2f} mm on {} specimens; close margins of {}: {} before, {} robust\n",
-               "robust less default correction", robust.at("difference_mm").get<double>(),
+  if (robust.at("difference_mm").is_number()) {
+    std::string interval;
+    if (const auto& ends = robust.at("confidence_mm"); ends.is_array())
+      interval = fmt::format(" ({:+.2f} to {:+.2f})", ends[0].get<double>(), ends[1].get<double>());
+    fmt::print("{:<34} {:+.2f} mm{} on {} specimens; close margins of {}: {} by default, {} robust\n",
+               "robust, difference from default", robust.at("difference_mm").get<double>(), interval,
                robust.at("compared").get<std::size_t>(), robust.at("closed").get<std::size_t>(),
                robust.at("close_margins_first").get<std::size_t>(),
                robust.at("close_margins_second").get<std::size_t>());
+  }
+  print_learning(result.at("learning"));
   print_advice(result.at("advice"));
   nlohmann::ordered_json summary{{"pooled", (output / "pooled.json").string()}, {"figure", result.at("figure")}};
   print_result(options, summary);

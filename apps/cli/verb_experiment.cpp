@@ -6,7 +6,10 @@
 #include <incise/laboratory/experiment.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -44,6 +47,7 @@ void print_summary(const nlohmann::ordered_json& result) {
                result.at("known_physics").at("mean_after_mm").get<double>(),
                result.at("known_physics").at("specimens").get<std::size_t>());
   }
+  print_learning(result.at("learning"));
   print_advice(result.at("advice"));
   for (const auto& one : result.at("left_out_of_calibration")) {
     fmt::print("{} (calibrate): left out of the fit: {}\n", one.at("name").get<std::string>(),
@@ -127,6 +131,18 @@ void add_experiment(Application& application) {
                  "Also cut every test specimen as a planner that knows the bench's physics would (first laboratory)");
   verb->add_flag("--withheld-force", settings->with_withheld_force,
                  "Also run `assess` as if the pull had not been measured");
+  verb->add_option_function<std::vector<std::size_t>>(
+          "--learning",
+          [settings](const std::vector<std::size_t>& photographs) {
+            if (std::adjacent_find(photographs.begin(), photographs.end(), std::greater_equal<>()) != photographs.end())
+              throw CaseError("command line", "--learning", fmt::format("{}", fmt::join(photographs, ",")),
+                              "numbers that ascend");
+            settings->learning = photographs;
+          },
+          "Also cut test specimens along the forecasts of only the first so many photographs, such as 1,2,4,8, without "
+          "and with simulation: what photographs are worth")
+      ->delimiter(',')
+      ->check(whole_between("--learning", 1, 100));
   verb->add_option("--tets", settings->tets, "Tetrahedra of the planner's meshes")
       ->check(whole_between("--tets", 5000, 500000));
   verb->add_option("--rule", *rule, "Of the planner's simulated cuts: cut.rule of its cases")

@@ -18,10 +18,12 @@
 #include <incise/steps/cut_steps.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <mutex>
 #include <ostream>
 #include <string_view>
@@ -60,6 +62,7 @@ ExperimentJson settings_json(const ExperimentSettings& settings) {
           {"paper_pass", settings.with_paper_pass},
           {"known_physics", settings.with_known_physics},
           {"withheld_force", settings.with_withheld_force},
+          {"learning", settings.learning},
           {"tets", settings.tets},
           {"rule", to_string(settings.rule)},
           {"truth", settings.truth.string()}};
@@ -93,6 +96,31 @@ double mean_modulus_kpa(const ExperimentJson& calibration) {
   return std::exp(sum / static_cast<double>(specimens.size()));
 }
 
+/// The case whose correction is by a forecast. @param path  ProfileInView, Photographs or Learned.
+CaseVariant forecast_variant(RivalPath path, const ChosenTool& tool, double youngs_modulus_kpa,
+                             const ExperimentJson& forecast) {
+  const auto list = [&forecast](const char* pointer) {
+    return forecast.at(ExperimentJson::json_pointer(pointer)).get<std::vector<double>>();
+  };
+  CaseVariant variant{tool, youngs_modulus_kpa, CompensationChoice{.method = CompensationMethod::Profile}};
+  CompensationChoice& choice = *variant.compensation;
+  if (path == RivalPath::ProfileInView) choice.photographed_mm = list("/in_view_mm");
+  if (path == RivalPath::Photographs) choice.photographed_mm = list("/without_simulation/residual_mm");
+  if (path == RivalPath::Learned) {
+    choice = calibrated_choice(tool);
+    choice.residual_mm = list("/with_simulation/residual_mm");
+    choice.simulated_share = forecast.at("with_simulation").at("simulated_share").get<double>();
+  }
+  return variant;
+}
+
+/// The tool that a calibration chose.
+ChosenTool tool_of(const ExperimentJson& calibration) {
+  const ExperimentJson& chosen = calibration.at("chosen");
+  return {chosen.at("speed_mm_s").get<double>(), chosen.at("dullness").get<double>(),
+          calibration.at("posterior").at("bias_mm").at("mean").get<double>()};
+}
+
 /// The second bench has specimens unlike the others among its own, and no planner that knows its physics.
 ExperimentSettings possible(ExperimentSettings settings) {
   INCISE_REQUIRE(settings.bench == 1 || settings.bench == 2,
@@ -100,6 +128,13 @@ ExperimentSettings possible(ExperimentSettings settings) {
   if (settings.bench == 2 && settings.outside)
     throw CaseError("command line", "--outside", fmt::format("{} on the second bench", *settings.outside),
                     "the option on the first one alone", "Specimens of the second differ from one another as it is.");
+  const bool is_ascending =
+      std::ranges::adjacent_find(settings.learning, std::greater_equal<>()) == settings.learning.end();
+  INCISE_REQUIRE(
+      settings.learning.empty() || (settings.learning.front() > 0 && is_ascending),
+      fmt::format("expected numbers of photographs above 0 that ascend, found {}", fmt::join(settings.learning, ", ")));
+  if (!settings.learning.empty() && !settings.with_rivals)
+    throw CaseError("command line", "--learning", "no rivals", "the rivals: what is learned is held against them");
   if (settings.bench == 2 && settings.with_known_physics)
     throw CaseError("command line", "--known-physics", "the second bench", "the option on the first one alone");
   return settings;
@@ -143,9 +178,12 @@ class Experiment {
                                          std::optional<double> force_n) const;
   void assess_without_pull(SpecimenTrial& specimen, Trial& trial);
   void correct(SpecimenTrial& specimen, Trial& trial);
-  [[nodiscard]] StepAnswer forecast_of(SpecimenTrial& specimen) const;
+  [[nodiscard]] StepAnswer forecast_of(SpecimenTrial& specimen, const std::filesystem::path& file,
+                                       const std::filesystem::path& folder, const std::filesystem::path& calibration,
+                                       const std::string& step) const;
   [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa, const ExperimentJson& forecast) const;
   void cut_rivals(SpecimenTrial& specimen, Trial& trial);
+  void cut_learning(SpecimenTrial& specimen, Trial& trial) const;
   void calibrate();
   void compare();
   void write_commands() const;
@@ -158,7 +196,14 @@ class Experiment {
   FolderLock lock_{root_};
   std::vector<Trial> trials_;
   const std::vector<RivalPath> rivals_ = rivals_of(settings_);
+  /// A calibration of the first photographs alone.
+  struct Learning {
+    std::size_t photographs = 0;
+    std::filesystem::path calibration;
+    ChosenTool tool;
+  };
   std::optional<ChosenTool> tool_;
+  std::vector<Learning> learning_;
   double calibrated_kpa_ = 0.0;  // geometric mean of the calibrated specimens' moduli
   ExperimentJson calibration_, table_1_, comparison_;
   std::vector<std::string> calibration_commands_, comparison_commands_;
@@ -217,6 +262,9 @@ ExperimentJson Experiment::run() {
   result["table_2"] = table_2_json(trials_);
   result["tested_specimens"] = ExperimentJson::array();
   for (const TestedSpecimen& specimen : tested) result["tested_specimens"].push_back(to_json(specimen));
+  const std::vector<LearningPoint> curve = learning_curve(std::span(&tested, 1));
+  result["learning"] = ExperimentJson::array();
+  for (const LearningPoint& point : curve) result["learning"].push_back(to_json(point));
   result["assessments"] = assessments_json(trials_);
   result["figures"] = ExperimentJson::array();
   for (const char* figure : {"comparison/box_plot.svg", "comparison/error_by_clock.svg", "table_1/table_1.svg",
@@ -333,6 +381,7 @@ double Experiment::cost_of(const Trial& trial) const {
   if (settings_.with_withheld_force) cost += 1.6;
   if (trial.role == TrialRole::Test) {
     for (const RivalPath path : rivals_) cost += is_without_simulation(path) ? 0.5 : 0.9;
+    cost += 1.5 * static_cast<double>(settings_.learning.size());
   }
   if (trial.role == TrialRole::Test && settings_.with_known_physics) cost += 1.5;
   return cost;
@@ -359,6 +408,7 @@ void Experiment::run_trial(Trial& trial) {
     }
     if (goes_on && settings_.with_withheld_force) assess_without_pull(specimen, trial);
     if (is_test) cut_rivals(specimen, trial);
+    if (is_test) cut_learning(specimen, trial);
     if (is_test && settings_.with_known_physics) trial.known_physics = bench.known_physics().result;
   }
   trial.stretch_force_n = specimen.stretch_force_n();
@@ -408,10 +458,10 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
 }
 
 /// What photographs say of this ring.
-StepAnswer Experiment::forecast_of(SpecimenTrial& specimen) const {
-  const std::filesystem::path file = specimen.case_file(), folder = specimen.at("compensated"),
-                              calibration = root_ / "calibration/calibration.json";
-  return specimen.ask({"forecast",
+StepAnswer Experiment::forecast_of(SpecimenTrial& specimen, const std::filesystem::path& file,
+                                   const std::filesystem::path& folder, const std::filesystem::path& calibration,
+                                   const std::string& step) const {
+  return specimen.ask({step,
                        {"forecast", file.string(), "--calibration", calibration.string(), "-o", folder.string()},
                        {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration},
                        {folder / "forecast/forecast.json"},
@@ -423,10 +473,9 @@ StepAnswer Experiment::forecast_of(SpecimenTrial& specimen) const {
 
 /// The case whose correction is the rival's path, by the same readings and photographs.
 CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, const ExperimentJson& forecast) const {
-  const auto list_in = [](const ExperimentJson& json, const char* pointer) {
-    return json.at(ExperimentJson::json_pointer(pointer)).get<std::vector<double>>();
+  const auto list = [&](const char* pointer) {
+    return calibration_.at(ExperimentJson::json_pointer(pointer)).get<std::vector<double>>();
   };
-  const auto list = [&](const char* pointer) { return list_in(calibration_, pointer); };
   CaseVariant variant{tool_, youngs_modulus_kpa, CompensationChoice{.method = CompensationMethod::Profile}};
   CompensationChoice& choice = *variant.compensation;
   switch (path) {
@@ -440,11 +489,9 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, co
       choice.photographed_mm = list("/photographed_profile/smoothed_mm");
       break;
     case RivalPath::ProfileInView:
-      choice.photographed_mm = list_in(forecast, "/in_view_mm");
-      break;
     case RivalPath::Photographs:
-      choice.photographed_mm = list_in(forecast, "/without_simulation/residual_mm");
-      break;
+    case RivalPath::Learned:
+      return forecast_variant(path, *tool_, youngs_modulus_kpa, forecast);
     case RivalPath::PaperPass:
       choice.method = CompensationMethod::Paper;
       break;
@@ -457,11 +504,6 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, co
       choice.residual_mm = list("/residual_profile/mean_mm");
       choice.simulated_share = calibration_.at("residual_profile").at("simulated_share").get<double>();
       break;
-    case RivalPath::Learned:
-      choice = calibrated_choice(*tool_);
-      choice.residual_mm = list_in(forecast, "/with_simulation/residual_mm");
-      choice.simulated_share = forecast.at("with_simulation").at("simulated_share").get<double>();
-      break;
     case RivalPath::Robust:
       choice = calibrated_choice(*tool_);
       break;
@@ -472,7 +514,9 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, co
 /// Cuts the same specimen along every rival's path.
 void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
   StepAnswer forecast;
-  if (settings_.with_rivals) forecast = forecast_of(specimen);
+  if (settings_.with_rivals)
+    forecast = forecast_of(specimen, specimen.case_file(), specimen.at("compensated"),
+                           root_ / "calibration/calibration.json", "forecast");
   const bool is_forecast = settings_.with_rivals && forecast.end == StepEnd::Done;
   if (is_forecast) trial.unlike = forecast.result.at("with_simulation").at("unlike").get<std::vector<std::string>>();
   for (const RivalPath path : rivals_) {
@@ -489,6 +533,29 @@ void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
       continue;
     }
     trial.rivals.push_back({path, specimen.cut_again(file, specimen.at(name), name, !is_without_simulation(path)).cut});
+  }
+}
+
+/// Cuts along what the first photographs alone forecast, without and with simulation.
+void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial) const {
+  for (const Learning& learning : learning_) {
+    const std::string suffix = fmt::format("_{}", learning.photographs);
+    const std::filesystem::path file =
+        specimen.write_variant("forecast" + suffix + ".yaml",
+                               {learning.tool, specimen.youngs_modulus_kpa(), calibrated_choice(learning.tool)});
+    const StepAnswer forecast =
+        forecast_of(specimen, file, specimen.at("forecast" + suffix), learning.calibration, "forecast" + suffix);
+    for (const RivalPath path : {RivalPath::Photographs, RivalPath::Learned}) {
+      const std::string name = learning_name(path, learning.photographs);
+      LearningCut& made = trial.learning.emplace_back(learning.photographs, path);
+      if (forecast.end != StepEnd::Done) {
+        made.cut.ended_at = refusal_of("forecast" + suffix, forecast);
+        continue;
+      }
+      const std::filesystem::path variant = specimen.write_variant(
+          name + ".yaml", forecast_variant(path, learning.tool, specimen.youngs_modulus_kpa(), forecast.result));
+      made.cut = specimen.cut_again(variant, specimen.at(name), name, !is_without_simulation(path)).cut;
+    }
   }
 }
 
@@ -516,8 +583,13 @@ void Experiment::calibrate() {
   if (asked.cases.empty())
     throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
   ExperimentSteps steps(root_, workers_, monitor_);
-  const auto calibrated = [&](const char* step, CalibrationMethod method, const char* folder, const char* product) {
+  const auto calibrated = [&](const std::string& step, CalibrationMethod method, const std::string& folder,
+                              const char* product, std::size_t photographs) {
     steps::CalibrateRequest request = asked;
+    request.cases.resize(photographs);
+    request.observed.resize(photographs);
+    request.forces_n.resize(photographs);
+    request.registrations.resize(photographs);
     request.request.method = method;
     request.output = root_ / folder;
     std::vector<std::string> words{"calibrate"};
@@ -533,15 +605,28 @@ void Experiment::calibrate() {
         steps.run({step, words, inputs, {request.output / product}, [=](const steps::StepContext& context) {
                      return steps::calibrate_on_cuts(request, context).step;
                    }});
+    return answer;
+  };
+  const std::size_t all = asked.cases.size();
+  const auto of_all = [&](const char* step, CalibrationMethod method, const char* folder, const char* product) {
+    const StepAnswer answer = calibrated(step, method, folder, product, all);
     require_done(answer, step, steps);
     return answer.result;
   };
-  calibration_ = calibrated("calibrate", CalibrationMethod::Fit, "calibration", "calibration.json");
-  const ExperimentJson& chosen = calibration_.at("chosen");
-  tool_ = ChosenTool{chosen.at("speed_mm_s").get<double>(), chosen.at("dullness").get<double>(),
-                     calibration_.at("posterior").at("bias_mm").at("mean").get<double>()};
+  calibration_ = of_all("calibrate", CalibrationMethod::Fit, "calibration", "calibration.json");
+  tool_ = tool_of(calibration_);
+  for (const std::size_t photographs : settings_.learning) {
+    if (photographs >= all) continue;
+    const std::string name = fmt::format("calibration_{}", photographs);
+    const StepAnswer answer = calibrated(name, CalibrationMethod::Fit, name, "calibration.json", photographs);
+    if (answer.end == StepEnd::Done)
+      learning_.push_back({photographs, root_ / name / "calibration.json", tool_of(answer.result)});
+    else
+      warnings_.push_back(
+          fmt::format("nothing is learned from {} photographs alone: {}", photographs, refusal_of(name, answer)));
+  }
   calibrated_kpa_ = mean_modulus_kpa(calibration_);
-  if (!settings_.is_quick) table_1_ = calibrated("table_1", CalibrationMethod::Paper, "table_1", "table_1.csv");
+  if (!settings_.is_quick) table_1_ = of_all("table_1", CalibrationMethod::Paper, "table_1", "table_1.csv");
   calibration_commands_ = steps.lines();
   report_end(nullptr, calibration_cost());
 }

@@ -8,11 +8,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 namespace incise::laboratory {
 namespace {
 
 constexpr double kHarmMm = 0.1;
+constexpr std::size_t kFewestSeries = 5;  // below it the ends of an interval would be those of single series
 
 /// A specimen's photographed mean |error| along a path; nothing: no closed ring, or not asked for.
 std::optional<double> error_along(const TestedSpecimen& specimen, std::string_view name) {
@@ -77,7 +79,8 @@ PairedErrors paired_errors(std::span<const TestedSeries> series, std::string_vie
 /// Of the mean difference. Specimens of one series share a calibration and an offset of the hand-eye transform, so that
 /// with several series whole ones are drawn anew.
 std::optional<Interval> interval_of(const PairedErrors& errors) {
-  if (errors.differences.size() > 1) return cluster_bootstrap(errors.differences);
+  if (errors.differences.size() > 1)
+    return errors.differences.size() >= kFewestSeries ? cluster_bootstrap(errors.differences) : std::nullopt;
   return paired_t_test(errors.first, errors.second).confidence;
 }
 
@@ -191,6 +194,74 @@ PathPair compare_two(std::span<const TestedSeries> series, std::string_view firs
   pair.second_mm = moments_of(errors.second).mean;
   pair.confidence = interval_of(errors);
   return pair;
+}
+
+std::vector<LearningPoint> learning_curve(std::span<const TestedSeries> series) {
+  const std::string without{to_string(RivalPath::Photographs)}, with{to_string(RivalPath::Learned)};
+  std::set<std::size_t> parts;
+  for (const TestedSeries& specimens : series) {
+    for (const TestedSpecimen& specimen : specimens)
+      for (const LearningPathCut& learning : specimen.learning) parts.insert(learning.photographs);
+  }
+  if (parts.empty()) return {};
+  std::vector<std::optional<std::size_t>> points{0};
+  points.insert(points.end(), parts.begin(), parts.end());
+  points.emplace_back(std::nullopt);
+  // Of one specimen: both cuts at each point, as if they were its only ones; nothing where one of them is missing.
+  const auto cuts_at = [&](const TestedSpecimen& specimen, std::optional<std::size_t> photographs,
+                           std::string_view path) -> std::optional<PathCut> {
+    if (photographs && *photographs > 0) {
+      for (const LearningPathCut& learning : specimen.learning)
+        if (learning.photographs == *photographs && learning.cut.path == path) return learning.cut;
+      return std::nullopt;
+    }
+    std::string_view name = path;
+    if (photographs) name = path == without ? kAsPlannedPath : to_string(RivalPath::Uncalibrated);
+    const PathCut* found = specimen.find(name);
+    if (found == nullptr) return std::nullopt;
+    PathCut cut = *found;
+    cut.path = path;
+    return cut;
+  };
+  std::vector<std::vector<TestedSeries>> at_point(points.size(), std::vector<TestedSeries>(series.size()));
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    for (const TestedSpecimen& specimen : series[i]) {
+      std::vector<TestedSpecimen> shown;
+      for (const std::optional<std::size_t>& photographs : points) {
+        const auto first = cuts_at(specimen, photographs, without), second = cuts_at(specimen, photographs, with);
+        if (!first || !second || first->end != PathEnd::Measured || second->end != PathEnd::Measured) break;
+        shown.push_back({specimen.name, specimen.unlike, {*first, *second}, {}});
+      }
+      if (shown.size() != points.size()) continue;
+      for (std::size_t k = 0; k < points.size(); ++k) at_point[k][i].push_back(std::move(shown[k]));
+    }
+  }
+  std::vector<LearningPoint> curve;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const PathPair pair = compare_two(at_point[k], without, with);
+    if (pair.compared == 0) return {};
+    curve.push_back({points[k], pair});
+  }
+  return curve;
+}
+
+LinePlot learning_plot(const std::vector<LearningPoint>& curve, double all) {
+  LinePlot plot{.title =
+                    "Virtual specimens: what photographs of earlier cuts are worth, on the specimens whose "
+                    "rings closed along every path",
+                .x_label = "photographs in the calibration",
+                .y_label = "mean |error|, mm",
+                .series = {}};
+  LineSeries without{"forecast without simulation", {}, {}, true}, with{"with simulation", {}, {}, true};
+  for (const LearningPoint& point : curve) {
+    const double photographs = point.photographs ? static_cast<double>(*point.photographs) : all;
+    without.x.push_back(photographs);
+    without.y.push_back(*point.pair.first_mm);
+    with.x.push_back(photographs);
+    with.y.push_back(*point.pair.second_mm);
+  }
+  plot.series = {std::move(without), std::move(with)};
+  return plot;
 }
 
 nlohmann::ordered_json paths_json(const PathComparison& comparison) {

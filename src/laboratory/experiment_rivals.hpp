@@ -3,6 +3,7 @@
 #include "laboratory/tested_specimen.hpp"
 
 #include <incise/evaluation/t_tests.hpp>
+#include <incise/report/line_plot.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -45,8 +46,8 @@ using TestedSeries = std::vector<TestedSpecimen>;
 
 /// A benefit is claimed over the best path without a simulated cut, chosen after the fact: the choice favours that
 /// rival. Differences are paired by specimen; their interval is Student's over the specimens of one series, or that of
-/// a bootstrap that draws whole series anew. Paths without a simulated cut are never refused by a simulation, the
-/// others may be: see `uncut`.
+/// a bootstrap that draws whole series anew, from five series on. Paths without a simulated cut are never refused by a
+/// simulation, the others may be: see `uncut`.
 [[nodiscard]] PathComparison compare_paths(std::span<const TestedSeries> series);
 [[nodiscard]] inline PathComparison compare_paths(const TestedSeries& specimens) {
   return compare_paths(std::span(&specimens, 1));
@@ -67,6 +68,22 @@ struct PathPair {
 void describe(Visitor& v, PathPair& p);
 [[nodiscard]] PathPair compare_two(std::span<const TestedSeries> series, std::string_view first,
                                    std::string_view second);
+
+/// What so many photographs are worth, without and with simulation.
+struct LearningPoint {
+  std::optional<std::size_t> photographs;  ///< absent: all of each calibration
+  PathPair pair;                           ///< along the forecasts without and with simulation, the same specimens
+};
+inline void describe(Visitor& v, LearningPoint& p) {
+  v("photographs", p.photographs, "Of a calibration, the first; absent: all.");
+  v("pair", p.pair,
+    "Along their forecast without and with simulation; of none: as planned, and corrected with the default tool.");
+}
+/// From none to all, on the specimens whose rings closed along both paths of every point; empty: there are none.
+[[nodiscard]] std::vector<LearningPoint> learning_curve(std::span<const TestedSeries> series);
+/// Mean |error| against photographs. @param all  number of photographs of a whole calibration, mean over series.
+/// @pre the curve has points.
+[[nodiscard]] LinePlot learning_plot(const std::vector<LearningPoint>& curve, double all);
 
 /// `{as_planned: {…}, constant: {…}, …}`
 [[nodiscard]] nlohmann::ordered_json paths_json(const PathComparison& comparison);

@@ -73,11 +73,16 @@ std::string cell(const TableJson& value, std::string_view column) {
 std::vector<std::string> refusals_of(const Trial& trial) {
   std::vector<const std::string*> reasons{&trial.ended_at, &trial.planned.ended_at, &trial.corrected.ended_at};
   for (const RivalCut& rival : trial.rivals) reasons.push_back(&rival.cut.ended_at);
+  for (const LearningCut& learning : trial.learning) reasons.push_back(&learning.cut.ended_at);
   reasons.push_back(&trial.withheld.ended_at);
   std::vector<std::string> list;
   for (const std::string* reason : reasons)
     if (!reason->empty()) list.push_back(*reason);
   return list;
+}
+
+std::string learning_name(RivalPath path, std::size_t photographs) {
+  return fmt::format("{}_{}", to_string(path), photographs);
 }
 
 const TrialCut* find_rival(const Trial& trial, RivalPath path) {
@@ -148,6 +153,8 @@ TableJson table_2_json(const std::vector<Trial>& trials) {
     rows.push_back(row_of(trial, "planned", trial.planned));
     if (trial.role != TrialRole::Calibrate) rows.push_back(row_of(trial, "corrected", trial.corrected));
     for (const RivalCut& rival : trial.rivals) rows.push_back(row_of(trial, to_string(rival.path), rival.cut));
+    for (const LearningCut& learning : trial.learning)
+      rows.push_back(row_of(trial, learning_name(learning.path, learning.photographs), learning.cut));
   }
   return rows;
 }

@@ -55,6 +55,13 @@ struct RivalCut {
   TrialCut cut;
 };
 
+/// A cut along what only the first photographs forecast.
+struct LearningCut {
+  std::size_t photographs = 0;
+  RivalPath path = RivalPath::Photographs;  ///< or Learned
+  TrialCut cut;
+};
+
 /// One specimen of an experiment, and what came of it.
 struct Trial {
   std::string name;
@@ -64,6 +71,7 @@ struct Trial {
   std::vector<std::pair<std::string, double>> given;  ///< hidden parameters that are not drawn from the seed
   TrialCut planned, corrected;
   std::vector<RivalCut> rivals;                    ///< those that were asked for
+  std::vector<LearningCut> learning;               ///< those that were asked for
   TrialCut withheld;                               ///< corrected as if the pull had not been measured, if asked for
   nlohmann::ordered_json compensation;             ///< what `incise compensate` printed; null: not run
   nlohmann::ordered_json assessment;               ///< what `incise assess` printed; null: not run
@@ -109,6 +117,9 @@ inline void describe(Visitor& v, TrialSummary& s) {
 /// zeros.
 [[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role,
                                       std::optional<RivalPath> path = std::nullopt);
+
+/// "learned_4": of what belongs to a forecast of the first photographs.
+[[nodiscard]] std::string learning_name(RivalPath path, std::size_t photographs);
 
 /// The cut along a path; nothing: it was not asked for.
 [[nodiscard]] const TrialCut* find_rival(const Trial& trial, RivalPath path);

@@ -12,9 +12,11 @@
 #include <incise/steps/case_steps.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 namespace incise {
 namespace {
@@ -31,9 +33,8 @@ constexpr const char* kHint = "Finish it with `incise experiment` of this versio
 /// One finished experiment.
 struct PooledSeries {
   std::filesystem::path folder;
-  std::uint64_t seed = 0, specimens = 0;
-  int bench = 1;
-  std::size_t calibrated_on = 0;  ///< photographs
+  std::uint64_t seed = 0, specimens = 0, bench = 1;
+  std::size_t photographs = 0;  ///< that were given to the calibration
   TestedSeries tested;
   std::vector<AdvisedSpecimen> advised;
 };
@@ -56,7 +57,16 @@ std::uint64_t count_in(const PoolJson& json, const std::filesystem::path& file, 
   return json.at(key).get<std::uint64_t>();
 }
 
-/// Paths and ends that go together, so that what is read can be counted.
+/// A measured cut has an error, and no other has one.
+void check(const laboratory::PathCut& cut, const std::string& specimen, const std::filesystem::path& file) {
+  if ((cut.end == laboratory::PathEnd::Measured) == cut.mean_abs_error_mm.has_value()) return;
+  throw DataError(file, specimen,
+                  fmt::format("a cut along {} that is {} and {} an error", cut.path, to_string(cut.end),
+                              cut.mean_abs_error_mm ? "has" : "lacks"),
+                  "an error for measured cuts alone", kHint);
+}
+
+/// What is read can be counted: known paths, each once, and a measured cut as planned.
 void check(const TestedSpecimen& specimen, const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& found, const char* expected) {
     throw DataError(file, specimen.name, found, expected, kHint);
@@ -64,27 +74,35 @@ void check(const TestedSpecimen& specimen, const std::filesystem::path& file) {
   const laboratory::PathCut* planned = specimen.find(laboratory::kAsPlannedPath);
   if (planned == nullptr || planned->end != laboratory::PathEnd::Measured)
     refuse("no measured cut as planned", "one: it is what every path is held against");
+  std::set<std::string> paths;
   for (const laboratory::PathCut& cut : specimen.cuts) {
     const bool is_known = cut.path == laboratory::kAsPlannedPath || cut.path == laboratory::kIncisePath ||
                           value_of<laboratory::RivalPath>(cut.path).has_value();
     if (!is_known) refuse(fmt::format("path {}", cut.path), "as_planned, incise or a rival's");
-    if ((cut.end == laboratory::PathEnd::Measured) != cut.mean_abs_error_mm.has_value())
-      refuse(fmt::format("a cut along {} that is {} and {} an error", cut.path, to_string(cut.end),
-                         cut.mean_abs_error_mm ? "has" : "lacks"),
-             "an error for measured cuts alone");
+    if (!paths.insert(cut.path).second) refuse(fmt::format("two cuts along {}", cut.path), "each path once");
+    check(cut, specimen.name, file);
+  }
+  std::set<std::pair<std::size_t, std::string>> parts;
+  for (const laboratory::LearningPathCut& learning : specimen.learning) {
+    const std::string& path = learning.cut.path;
+    const bool is_forecast =
+        path == to_string(laboratory::RivalPath::Photographs) || path == to_string(laboratory::RivalPath::Learned);
+    if (!is_forecast || learning.photographs == 0 || !parts.insert({learning.photographs, path}).second)
+      refuse(fmt::format("path {} of {} photographs", path, learning.photographs),
+             "photographs and learned, each once for each number of photographs above 0");
+    check(learning.cut, specimen.name, file);
   }
 }
 
-/// Photographs that entered the calibration.
-std::size_t calibrated_on(const PoolJson& study, const std::filesystem::path& file) {
-  for (const char* key : {"table_2", "left_out_of_calibration"})
-    if (!study.contains(key) || !study.at(key).is_array()) throw DataError(file, key, "no list", "a list", kHint);
-  const auto measured = std::ranges::count_if(study.at("table_2"), [](const PoolJson& row) {
-    return row.is_object() && row.value("role", "") == to_string(laboratory::TrialRole::Calibrate) &&
+/// Photographs that were given to the calibration.
+std::size_t photographs_in(const PoolJson& study, const std::filesystem::path& file) {
+  if (!study.contains("table_2") || !study.at("table_2").is_array())
+    throw DataError(file, "table_2", "no list", "a list of cuts", kHint);
+  const PoolJson calibrated(to_string(laboratory::TrialRole::Calibrate));
+  return static_cast<std::size_t>(std::ranges::count_if(study.at("table_2"), [&](const PoolJson& row) {
+    return row.is_object() && row.value("role", PoolJson()) == calibrated &&
            row.value("mean_abs_error_mm", PoolJson()).is_number();
-  });
-  return static_cast<std::size_t>(measured) -
-         std::min<std::size_t>(static_cast<std::size_t>(measured), study.at("left_out_of_calibration").size());
+  }));
 }
 
 PooledSeries read_series(const std::filesystem::path& folder) {
@@ -92,32 +110,60 @@ PooledSeries read_series(const std::filesystem::path& folder) {
   const PoolJson claimed = read_json(claim), found = read_json(study);
   PooledSeries series{.folder = folder};
   series.seed = count_in(claimed, claim, "seed");
-  series.bench = claimed.contains("bench") ? static_cast<int>(count_in(claimed, claim, "bench")) : 1;
+  series.bench = claimed.contains("bench") ? count_in(claimed, claim, "bench") : 1;
+  if (series.bench != 1 && series.bench != 2)
+    throw DataError(claim, "bench", fmt::format("{}", series.bench), "1 or 2");
   series.specimens = count_in(found, study, "specimens");
   series.tested = list_in<TestedSpecimen>(found, study, "tested_specimens");
-  for (const TestedSpecimen& specimen : series.tested) check(specimen, study);
-  series.calibrated_on = calibrated_on(found, study);
-  const std::filesystem::path advice = folder / "advice/advice.json";
+  std::set<std::string> names;
+  for (const TestedSpecimen& specimen : series.tested) {
+    check(specimen, study);
+    if (!names.insert(specimen.name).second)
+      throw DataError(study, "tested_specimens", fmt::format("{} twice", specimen.name), "each specimen once", kHint);
+  }
+  series.photographs = photographs_in(found, study);
   if (found.contains("advice") && found.at("advice").is_object())
-    series.advised = list_in<AdvisedSpecimen>(read_json(advice), advice, "specimens");
+    series.advised = list_in<AdvisedSpecimen>(found.at("advice"), study, "specimens");
+  for (AdvisedSpecimen& specimen : series.advised) specimen.name = fmt::format("{}/{}", series.seed, specimen.name);
   return series;
 }
 
 /// Two experiments must not share a specimen: it would count twice.
 void require_apart(const std::vector<PooledSeries>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::filesystem::path file = all[i].folder / "experiment.json";
-    if (all[i].bench != all.front().bench)
-      throw DataError(file, "bench", fmt::format("{}", all[i].bench),
+    const PooledSeries& one = all[i];
+    const std::filesystem::path file = one.folder / "experiment.json";
+    if (one.bench != all.front().bench)
+      throw DataError(file, "bench", fmt::format("{}", one.bench),
                       fmt::format("{}, that of {}", all.front().bench, all.front().folder.string()));
     for (std::size_t j = 0; j < i; ++j) {
-      const bool is_shared =
-          all[i].seed < all[j].seed + all[j].specimens && all[j].seed < all[i].seed + all[i].specimens;
-      if (is_shared)
-        throw DataError(file, "seed", fmt::format("{}, {} specimens", all[i].seed, all[i].specimens),
-                        fmt::format("seeds other than those of {}: {} to {}", all[j].folder.string(), all[j].seed,
-                                    all[j].seed + all[j].specimens - 1));
+      const PooledSeries& other = all[j];
+      const PooledSeries& first = one.seed < other.seed ? one : other;
+      const std::uint64_t apart = std::max(one.seed, other.seed) - first.seed;
+      if (apart < first.specimens || one.seed == other.seed)
+        throw DataError(file, "seed", fmt::format("{}, {} specimens", one.seed, one.specimens),
+                        fmt::format("seeds other than those of {}: {} specimens from {}", other.folder.string(),
+                                    other.specimens, other.seed));
     }
+  }
+}
+
+/// A path that only some series were cut along would be held against the others on other specimens.
+void require_same_paths(const std::vector<PooledSeries>& all) {
+  const auto paths_of = [](const PooledSeries& series) {
+    std::set<std::string> paths;
+    for (const TestedSpecimen& specimen : series.tested)
+      for (const laboratory::PathCut& cut : specimen.cuts) paths.insert(cut.path);
+    return paths;
+  };
+  const PooledSeries* first = nullptr;
+  for (const PooledSeries& series : all) {
+    if (series.tested.empty()) continue;
+    if (first == nullptr) first = &series;
+    if (paths_of(series) != paths_of(*first))
+      throw DataError(series.folder / "study.json", "tested_specimens",
+                      fmt::format("cuts along {}", fmt::join(paths_of(series), ", ")),
+                      fmt::format("along {}, as in {}", fmt::join(paths_of(*first), ", "), first->folder.string()));
   }
 }
 
@@ -130,14 +176,14 @@ PoolJson comparison_json(const std::vector<TestedSeries>& series, const PathComp
   return json;
 }
 
-/// Of one series: the mean along every path, on the specimens where the best one over all series closed, too.
+/// Of one series: how far every path differs from the best one over all series.
 PoolJson series_json(const PooledSeries& series, const PathComparison& pooled) {
   PoolJson json{{"folder", series.folder.string()},
                 {"seed", series.seed},
                 {"specimens", series.specimens},
-                {"calibrated_on", series.calibrated_on},
+                {"photographs", series.photographs},
                 {"tested", series.tested.size()}};
-  json["unlike"] = laboratory::of_likeness(series.tested, true).size();
+  json["tested_unlike"] = laboratory::of_likeness(series.tested, true).size();
   json["differences_mm"] = PoolJson::object();
   for (const PathResult& path : pooled.paths) {
     if (!pooled.best_without_simulation || path.name == *pooled.best_without_simulation) continue;
@@ -201,6 +247,7 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   std::vector<PooledSeries> all;
   for (const std::filesystem::path& folder : experiments) all.push_back(read_series(folder));
   require_apart(all);
+  require_same_paths(all);
   std::vector<TestedSeries> tested, unlike, like;
   std::vector<AdvisedSpecimen> advised;
   for (const PooledSeries& series : all) {
@@ -225,6 +272,9 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   result["like"] = comparison_json(like, parts[2].second);
   const std::string default_path{laboratory::kIncisePath}, robust{to_string(laboratory::RivalPath::Robust)};
   result["robust_against_default"] = to_json(laboratory::compare_two(tested, default_path, robust));
+  const std::vector<laboratory::LearningPoint> curve = laboratory::learning_curve(tested);
+  result["learning"] = PoolJson::array();
+  for (const laboratory::LearningPoint& point : curve) result["learning"].push_back(to_json(point));
   const PoolJson advice = laboratory::advice_scores(advised);
   result["advice"] = advice;
   AtomicFolder folder(output);
@@ -235,9 +285,16 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
     return path.difference_mm && path.name != laboratory::kAsPlannedPath;
   });
   if (is_drawn) write_atomically(folder.path() / "paths.svg", paths_svg(parts, all.size()));
+  if (!curve.empty()) {
+    double photographs = 0.0;
+    for (const PooledSeries& series : all) photographs += static_cast<double>(series.photographs);
+    write_atomically(folder.path() / "learning.svg",
+                     line_plot_svg(laboratory::learning_plot(curve, photographs / static_cast<double>(all.size()))));
+  }
   if (advice.is_object()) laboratory::draw_advice(folder.path(), advice);
   std::vector<std::filesystem::path> inputs;
-  for (const PooledSeries& series : all) inputs.push_back(series.folder / "study.json");
+  for (const PooledSeries& series : all)
+    for (const char* file : {"experiment.json", "study.json"}) inputs.push_back(series.folder / file);
   const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   write_manifest(folder.path(), steps::manifest_of(run, "{}", inputs, wall_s));
   folder.commit();

@@ -1,6 +1,7 @@
 #include "laboratory/tested_specimen.hpp"
 
 #include <incise/calibration/ring_covariates.hpp>
+#include <incise/core/error.hpp>
 #include <incise/io/json_file.hpp>
 
 #include <fmt/format.h>
@@ -27,10 +28,15 @@ std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const Trial&
   const std::filesystem::path file = truth / fmt::format("{}_{}", trial.name, tag) / "cut_truth.json";
   const nlohmann::ordered_json json = read_json(file);
   TrueCut result;
-  if (!json.contains("mean_abs_error_mm")) return result;
-  result.mean_abs_error_mm = json.at("mean_abs_error_mm").get<double>();
-  const auto errors = json.at("signed_errors_mm").get<std::vector<double>>();
-  result.least_margin_mm = json.at("target_mm").get<double>() + *std::min_element(errors.begin(), errors.end());
+  if (json.is_object() && !json.contains("mean_abs_error_mm")) return result;
+  try {
+    result.mean_abs_error_mm = json.at("mean_abs_error_mm").get<double>();
+    const auto errors = json.at("signed_errors_mm").get<std::vector<double>>();
+    if (errors.empty()) throw DataError(file, "signed_errors_mm", "no errors", "those of a closed ring");
+    result.least_margin_mm = json.at("target_mm").get<double>() + *std::min_element(errors.begin(), errors.end());
+  } catch (const nlohmann::json::exception& error) {
+    throw DataError(file, "", error.what(), "the truth of a cut, as `incise bench cut` writes it");
+  }
   return result;
 }
 
@@ -48,7 +54,7 @@ std::vector<TestedSpecimen> tested_specimens(const std::vector<Trial>& trials, c
   std::vector<TestedSpecimen> tested;
   for (const Trial& trial : trials) {
     if (trial.role != TrialRole::Test || !trial.planned.measured) continue;
-    TestedSpecimen specimen{.name = trial.name, .unlike = {}, .cuts = {}};
+    TestedSpecimen specimen{.name = trial.name, .unlike = {}, .cuts = {}, .learning = {}};
     if (trial.unlike) specimen.unlike = trial.unlike->size();
     const auto add = [&](std::string_view path, const TrialCut& cut, std::string_view tag) {
       specimen.cuts.push_back(path_cut(trial, path, cut, truth, tag));
@@ -64,6 +70,9 @@ std::vector<TestedSpecimen> tested_specimens(const std::vector<Trial>& trials, c
       add(to_string(rival.path), rival.cut, to_string(rival.path));
     }
     add_incise();
+    for (const LearningCut& learning : trial.learning)
+      specimen.learning.push_back({learning.photographs, path_cut(trial, to_string(learning.path), learning.cut, truth,
+                                                                  learning_name(learning.path, learning.photographs))});
     tested.push_back(std::move(specimen));
   }
   return tested;

@@ -35,6 +35,8 @@ inline constexpr std::array<std::string_view, 3> kPathEndNames{"measured", "open
   return kPathEndNames;
 }
 
+inline constexpr double kMostErrorMm = 1e3;  ///< of what is read: no ring is that large
+
 /// What came of one specimen along one path.
 struct PathCut {
   std::string path;  ///< as_planned, incise, or that of a RivalPath
@@ -45,9 +47,19 @@ struct PathCut {
 inline void describe(Visitor& v, PathCut& c) {
   v("path", c.path, "as_planned, incise, or a rival.");
   v("end", c.end, "Whether it was cut, and its ring closed in the photograph.");
-  v({"mean_abs_error_mm", "Of the photograph's points.", "mm"}, c.mean_abs_error_mm, kNotNegative);
+  v({"mean_abs_error_mm", "Of the photograph's points.", "mm"}, c.mean_abs_error_mm, {0.0, kMostErrorMm});
   v({"least_margin_mm", "Least distance of the true kerf from the tumour's edge; absent: open.", "mm"},
     c.least_margin_mm);
+}
+
+/// What came of one along the forecast of only the first photographs.
+struct LearningPathCut {
+  std::size_t photographs = 0;
+  PathCut cut;  ///< along `photographs` or `learned`
+};
+inline void describe(Visitor& v, LearningPathCut& c) {
+  v("photographs", c.photographs, "Of the calibration, the first.");
+  describe(v, c.cut);
 }
 
 /// A test specimen whose planned cut was measured, and what came of it along every path. It is what comparisons are
@@ -56,6 +68,7 @@ struct TestedSpecimen {
   std::string name;
   std::optional<std::size_t> unlike;  ///< covariates outside those of the calibration; absent: no forecast
   std::vector<PathCut> cuts;          ///< as planned first
+  std::vector<LearningPathCut> learning;  ///< by photographs, ascending
   /// Nothing: this path was not asked for.
   [[nodiscard]] const PathCut* find(std::string_view path) const;
 };
@@ -63,6 +76,7 @@ inline void describe(Visitor& v, TestedSpecimen& s) {
   v("specimen", s.name, "Its name.");
   v("unlike", s.unlike, "Covariates outside those of the calibration.");
   v("cuts", s.cuts, "Along every path, as planned first.");
+  v("learning", s.learning, "Along the forecasts of the first photographs.");
 }
 
 inline constexpr std::string_view kAsPlannedPath = "as_planned";

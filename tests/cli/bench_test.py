@@ -129,6 +129,43 @@ class AcceptanceTest(CommandTest):
         self.assertEqual(files_below(self.out), ["truth", "truth/thesis.txt"])
 
 
+class PoolTest(CommandTest):
+    """Finished experiments, written by hand."""
+
+    def series(self, name, seed, incise_mm):
+        def cut(path, error_mm):
+            return {"path": path, "end": "measured", "mean_abs_error_mm": error_mm, "least_margin_mm": 2.5}
+
+        folder = self.folder / name
+        folder.mkdir()
+        (folder / "experiment.json").write_text(json.dumps({"seed": seed, "bench": 2}))
+        tested = [{"specimen": "S3", "unlike": 2, "learning": [],
+                   "cuts": [cut("as_planned", 1.5), cut("photographs", 0.5), cut("incise", incise_mm), cut("robust", 0.6)]}]
+        (folder / "study.json").write_text(json.dumps({"specimens": 4, "tested_specimens": tested, "table_2": [], "advice": None}))
+        return folder
+
+    def test_series_are_taken_together_and_stay_as_they_are(self):
+        first, second = self.series("first", 1, 0.4), self.series("second", 5, 0.8)
+        before = [(folder / file).read_bytes() for folder in (first, second) for file in files_below(folder)]
+        found = self.json_of("bench", "pool", first, second, "-o", self.folder / "pooled")
+        self.assertAlmostEqual(found["rivals"]["incise"]["difference_mm"], 0.1)
+        self.assertTrue((self.folder / "pooled" / "paths.svg").is_file())
+        said = self.incise("bench", "pool", first, second, "-o", self.folder / "pooled").stdout
+        self.assertIn("unlike the calibration's", said)
+        self.assertIn("+0.10", said)
+        self.assertEqual(before, [(folder / file).read_bytes() for folder in (first, second) for file in files_below(folder)])
+
+    def test_what_cannot_be_taken_together_is_refused(self):
+        first, second = self.series("first", 1, 0.4), self.series("second", 3, 0.8)
+        out = self.folder / "pooled"
+        self.assert_refused(self.incise("bench", "pool", first, second, "-o", out), BAD_DATA, "seeds other than those of")
+        self.assert_refused(self.incise("bench", "pool", first, first / ".." / "first", "-o", out), BAD_DATA, "seeds other")
+        self.assert_refused(self.incise("bench", "pool", first, "-o", out), BAD_CASE, "experiments")
+        self.assert_refused(self.incise("bench", "pool", first, second, "-o", first / "pooled"), BAD_CASE, "input")
+        self.assert_refused(self.incise("bench", "pool", first, self.folder / "none", "-o", out), BAD_DATA, "no such file")
+        self.assertFalse(out.exists())
+
+
 class BadInputTest(CommandTest):
     def refused(self, *says, **given):
         done = self.incise("bench", "make", specimen_file(self.folder / "specimen.json", **given), "-o", self.out)

@@ -125,8 +125,11 @@ TEST(ComparePaths, DrawsWholeSeriesAnewWhereThereAreSeveral) {
   const PathResult& incise = *paths.find("incise");
   EXPECT_EQ(incise.compared, 6U);
   EXPECT_NEAR(*incise.difference_mm, 0.4, 1e-12);
-  EXPECT_NEAR(incise.confidence->low, 0.2, 1e-12) << "both draws of the first series";
-  EXPECT_NEAR(incise.confidence->high, 0.6, 1e-12);
+  EXPECT_FALSE(incise.confidence) << "two series tell no interval";
+  const std::vector<TestedSeries> six{three, others, three, others, three, others};
+  const Interval found = *compare_paths(six).find("incise")->confidence;
+  EXPECT_NEAR(0.5 * (found.low + found.high), 0.4, 0.02);
+  EXPECT_GT(found.high - found.low, 0.2) << "specimens of a series are alike";
 }
 
 TEST(CompareTwo, HoldsOnePathAgainstAnotherOnTheSpecimensThatBothClosed) {
@@ -143,6 +146,32 @@ TEST(CompareTwo, HoldsOnePathAgainstAnotherOnTheSpecimensThatBothClosed) {
   EXPECT_EQ(pair.close_margins_first, 2U);
   EXPECT_EQ(pair.close_margins_second, 1U);
   EXPECT_FALSE(compare_two(std::span(&specimens, 1), "incise", "robust").difference_mm());
+}
+
+TEST(LearningCurve, GoesFromNoPhotographToAllOnTheSpecimensThatBothClosed) {
+  TestedSeries specimens;
+  for (const double more_mm : {0.0, 0.2}) {
+    TestedSpecimen& one =
+        specimens.emplace_back(specimen_of({cut_with("as_planned", 1.5), cut_with("incise_uncalibrated", 0.9 + more_mm),
+                                            cut_with("photographs", 0.5 + more_mm), cut_with("learned", 0.6)}));
+    one.learning = {{2, cut_with("photographs", 0.8 + more_mm)}, {2, cut_with("learned", 0.7)}};
+  }
+  const std::vector<LearningPoint> curve = learning_curve(std::span(&specimens, 1));
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_EQ(curve[0].photographs, 0U);
+  EXPECT_NEAR(*curve[0].pair.difference_mm(), 1.0 - 1.5, 1e-12);
+  EXPECT_EQ(curve[1].photographs, 2U);
+  EXPECT_NEAR(*curve[1].pair.first_mm, 0.9, 1e-12);
+  EXPECT_NEAR(*curve[1].pair.difference_mm(), -0.2, 1e-12);
+  EXPECT_FALSE(curve[2].photographs) << "all";
+  EXPECT_NEAR(*curve[2].pair.difference_mm(), 0.0, 1e-12);
+  EXPECT_EQ(learning_plot(curve, 9.0).series[0].x, (std::vector<double>{0.0, 2.0, 9.0}));
+  specimens[1].learning[0].cut = cut_with("photographs", std::nullopt);
+  for (const LearningPoint& point : learning_curve(std::span(&specimens, 1)))
+    EXPECT_EQ(point.pair.compared, 1U) << "the same specimens at every point";
+  specimens[0].learning.clear();
+  specimens[1].learning.clear();
+  EXPECT_TRUE(learning_curve(std::span(&specimens, 1)).empty()) << "nobody asked";
 }
 
 }  // namespace

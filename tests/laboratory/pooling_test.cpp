@@ -36,9 +36,12 @@ PooledJson advised(double p_worse, double planned_mm, double corrected_mm) {
                       {"true_mm", error_mm},
                       {"least_margin_mm", 3.0}};
   };
-  return {{"specimen", "S3"},     {"role", "test"},
-          {"kind", ""},           {"advice", "compensate"},
-          {"p_worse", p_worse},   {"planned", made(planned_mm)},
+  return {{"specimen", "S3"},
+          {"role", "test"},
+          {"kind", ""},
+          {"advice", "compensate"},
+          {"p_worse", p_worse},
+          {"planned", made(planned_mm)},
           {"corrected", made(corrected_mm)}};
 }
 
@@ -49,17 +52,25 @@ class Pooling : public ::testing::Test {
   std::filesystem::path series(std::uint64_t seed, double incise_mm, double p_worse = 0.1,
                                const std::function<void(PooledJson&)>& change = {}) const {
     const std::filesystem::path at = folder_ / ("series" + std::to_string(seed));
-    std::filesystem::create_directories(at / "advice");
+    std::filesystem::create_directories(at);
     write_json(at / "experiment.json", {{"schema", "incise.experiment/1"}, {"seed", seed}, {"bench", 2}});
     PooledJson tested = PooledJson::array();
-    for (const std::size_t unlike : {2, 1}) {
-      tested.push_back({{"specimen", "S" + std::to_string(5 - unlike)},
-                        {"unlike", unlike},
-                        {"cuts",
-                         {cut("as_planned", 1.5, 2.0), cut("photographs", 0.5, 2.5), cut("incise", incise_mm, 2.1),
-                          cut("robust", incise_mm + 0.1, 2.6)}}});
+    PooledJson learning = PooledJson::array();
+    for (const char* path : {"photographs", "learned"}) {
+      PooledJson part = cut(path, 0.7);
+      part["photographs"] = 1;
+      learning.push_back(part);
     }
-    const PooledJson advice{{"specimens", {advised(p_worse, 1.5, incise_mm)}}};
+    for (const std::size_t unlike : {2, 1}) {
+      tested.push_back(
+          {{"specimen", "S" + std::to_string(5 - unlike)},
+           {"unlike", unlike},
+           {"learning", learning},
+           {"cuts",
+            {cut("as_planned", 1.5, 2.0), cut("incise_uncalibrated", 0.9), cut("learned", 0.6),
+             cut("photographs", 0.5, 2.5), cut("incise", incise_mm, 2.1), cut("robust", incise_mm + 0.1, 2.6)}}});
+    }
+    const PooledJson advice{{"specimens", PooledJson::array({advised(p_worse, 1.5, incise_mm)})}};
     PooledJson study{{"specimens", 4},
                      {"tested_specimens", tested},
                      {"table_2",
@@ -70,7 +81,6 @@ class Pooling : public ::testing::Test {
                      {"advice", advice}};
     if (change) change(study);
     write_json(at / "study.json", study);
-    write_json(at / "advice/advice.json", advice);
     return at;
   }
   [[nodiscard]] PooledJson pool(const std::vector<std::filesystem::path>& folders) const {
@@ -97,8 +107,7 @@ TEST_F(Pooling, HoldsEveryPathAgainstTheBestOneAndDrawsWholeSeriesAnew) {
   const PooledJson& incise = found.at("rivals").at("incise");
   EXPECT_EQ(incise.at("compared"), 4);
   EXPECT_NEAR(incise.at("difference_mm"), 0.1, 1e-12);
-  EXPECT_NEAR(incise.at("confidence_mm").at(0), -0.1, 1e-12) << "the first series twice";
-  EXPECT_NEAR(incise.at("confidence_mm").at(1), 0.3, 1e-12);
+  EXPECT_TRUE(incise.at("confidence_mm").is_null()) << "two series tell no interval";
   EXPECT_EQ(incise.at("close_margins"), 4);
   EXPECT_EQ(found.at("unlike").at("tested"), 2);
   EXPECT_EQ(found.at("like").at("tested"), 2);
@@ -107,18 +116,44 @@ TEST_F(Pooling, HoldsEveryPathAgainstTheBestOneAndDrawsWholeSeriesAnew) {
   EXPECT_EQ(robust.at("close_margins_first"), 4);
   EXPECT_EQ(robust.at("close_margins_second"), 0);
   const PooledJson& first = found.at("series").at(0);
-  EXPECT_EQ(first.at("calibrated_on"), 1);
-  EXPECT_EQ(first.at("unlike"), 1);
+  EXPECT_EQ(first.at("photographs"), 1);
+  EXPECT_EQ(first.at("tested_unlike"), 1);
   EXPECT_NEAR(first.at("differences_mm").at("incise"), -0.1, 1e-12);
-  for (const char* file : {"pooled.json", "paths.csv", "paths.svg", "reliability.svg", "manifest.json"})
+  for (const char* file : {"pooled.json", "paths.csv", "paths.svg", "learning.svg", "reliability.svg", "manifest.json"})
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_ / "pooled" / file)) << file;
   EXPECT_FALSE(std::filesystem::exists(folder_ / "pooled/roc.svg")) << "nobody was worse";
+}
+
+TEST_F(Pooling, DrawsWholeSeriesAnewFromFiveOn) {
+  std::vector<std::filesystem::path> all;
+  for (const std::uint64_t seed : {100U, 200U, 300U, 400U, 500U})
+    all.push_back(series(seed, 0.4 + 0.001 * static_cast<double>(seed)));
+  const PooledJson found = pool(all);
+  const PooledJson& incise = found.at("rivals").at("incise");
+  EXPECT_NEAR(incise.at("difference_mm"), 0.2, 1e-12);
+  EXPECT_GT(incise.at("confidence_mm").at(0), 0.0);
+  EXPECT_LT(incise.at("confidence_mm").at(0), 0.15);
+  EXPECT_GT(incise.at("confidence_mm").at(1), 0.25);
+  EXPECT_LT(incise.at("confidence_mm").at(1), 0.4);
+}
+
+TEST_F(Pooling, ShowsWhatPhotographsAreWorth) {
+  const PooledJson found = pool({series(100, 0.4), series(200, 0.8)});
+  const PooledJson& curve = found.at("learning");
+  ASSERT_EQ(curve.size(), 3);
+  EXPECT_EQ(curve.at(0).at("photographs"), 0);
+  EXPECT_NEAR(curve.at(0).at("pair").at("difference_mm"), 0.9 - 1.5, 1e-12);
+  EXPECT_EQ(curve.at(1).at("photographs"), 1);
+  EXPECT_NEAR(curve.at(1).at("pair").at("difference_mm"), 0.0, 1e-12);
+  EXPECT_TRUE(curve.at(2).at("photographs").is_null());
+  EXPECT_NEAR(curve.at(2).at("pair").at("difference_mm"), 0.1, 1e-12);
 }
 
 TEST_F(Pooling, ScoresTheAdviceOverAllSeries) {
   const PooledJson found = pool({series(100, 0.4, 0.1), series(200, 1.8, 0.6)});
   const PooledJson& advice = found.at("advice");
   EXPECT_EQ(advice.at("advised"), 2);
+  EXPECT_EQ(advice.at("specimens").at(1).at("specimen"), "200/S3");
   EXPECT_EQ(advice.at("worse"), 1);
   EXPECT_EQ(advice.at("auc").at("area"), 1.0);
   EXPECT_EQ(advice.at("close_margin").at("cuts"), 4);
@@ -134,22 +169,38 @@ TEST_F(Pooling, RefusesWhatCannotBeCountedTogether) {
   expect_refused({first, folder_ / "missing"}, "no such file");
   expect_refused({first, series(200, 0.4, 0.1, [](PooledJson& study) { study.erase("tested_specimens"); })},
                  "tested_specimens: found no list");
-  expect_refused({first, series(200, 0.4, 0.1,
-                                [](PooledJson& study) {
-                                  study["tested_specimens"][0]["cuts"][2]["path"] = "another";
-                                })},
-                 "path another");
+  expect_refused(
+      {first,
+       series(200, 0.4, 0.1, [](PooledJson& study) { study["tested_specimens"][0]["cuts"][2]["path"] = "another"; })},
+      "path another");
   expect_refused({first, series(200, 0.4, 0.1,
                                 [](PooledJson& study) {
                                   study["tested_specimens"][0]["cuts"][2]["mean_abs_error_mm"] = nullptr;
                                 })},
                  "lacks an error");
-  expect_refused({first, series(200, 0.4, 0.1,
-                                [](PooledJson& study) { study["tested_specimens"][0]["cuts"].erase(0); })},
-                 "no measured cut as planned");
+  expect_refused(
+      {first, series(200, 0.4, 0.1, [](PooledJson& study) { study["tested_specimens"][0]["cuts"].erase(0); })},
+      "no measured cut as planned");
+  const auto refuse = [&](const char* why, const std::function<void(PooledJson&)>& change) {
+    expect_refused({first, series(200, 0.4, 0.1, change)}, why);
+  };
+  refuse("S3 twice", [](PooledJson& study) { study["tested_specimens"][1]["specimen"] = "S3"; });
+  refuse("two cuts along robust",
+         [](PooledJson& study) { study["tested_specimens"][0]["cuts"].push_back(cut("robust", 0.5)); });
+  refuse("lacks an error",
+         [](PooledJson& study) { study["tested_specimens"][0]["learning"][0]["mean_abs_error_mm"] = nullptr; });
+  refuse("of 0 photographs", [](PooledJson& study) { study["tested_specimens"][0]["learning"][0]["photographs"] = 0; });
+  refuse("as in", [](PooledJson& study) {
+    for (PooledJson& specimen : study["tested_specimens"]) specimen["cuts"].erase(specimen["cuts"].size() - 1);
+  });
+  refuse("table_2: found no list", [](PooledJson& study) { study["table_2"] = 3; });
+  refuse("expected a number in",
+         [](PooledJson& study) { study["tested_specimens"][0]["cuts"][0]["mean_abs_error_mm"] = 1e308; });
   const std::filesystem::path other = series(200, 0.4);
   write_json(other / "experiment.json", {{"seed", 200}});
   expect_refused({first, other}, "bench: found 1");
+  write_json(other / "experiment.json", {{"seed", 200}, {"bench", 4294967298}});
+  expect_refused({first, other}, "1 or 2");
   write_json(other / "experiment.json", {{"seed", "200"}, {"bench", 2}});
   expect_refused({first, other}, "a whole number");
 }

@@ -7,9 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace incise {
 
@@ -26,6 +28,9 @@ struct ExperimentSettings {
   bool with_paper_pass = false;      ///< without the rivals: still the paper's single correction
   bool with_known_physics = false;   ///< and along that of a planner that knows the bench's physics
   bool with_withheld_force = false;  ///< advice is asked for once more without the pull
+  /// Test specimens are also cut along the forecasts of only the first so many photographs: each 1 or more, ascending;
+  /// those that are not fewer than all are left out. With the rivals alone.
+  std::vector<std::size_t> learning;
   int tets = 25000;                  ///< of the planner's meshes
   CutRule rule = CutRule::Tets;      ///< of the planner's simulated cuts
 };
@@ -37,12 +42,13 @@ struct ExperimentSettings {
 ///
 ///   S1/ …         of a specimen: lab/ (readings), planned/, compensated/, photographs, cache/, log.txt
 ///   truth/        the specimens themselves; nothing that plans a cut is given it
-///   calibration/  table_1/  comparison/  advice/
+///   calibration/  calibration_N/ (of the first N photographs)  table_1/  comparison/  advice/
 ///   table_2.csv  commands.sh  study.json  report.html  manifest.json  experiment.json
 ///
 /// @param run  what the manifests say; `seed` is that of the first specimen.
 /// @returns what study.json holds.
-/// @throws CaseError for outside specimens or known physics on the second bench, which has neither; DataError where
+/// @throws InvalidArgument for settings out of their ranges; CaseError for outside specimens or known physics on the
+/// second bench, which has neither, or for learning without rivals; DataError where
 /// nothing is left to calibrate on or a file cannot be written; Cancelled: finished steps are kept.
 [[nodiscard]] nlohmann::ordered_json experiment(const ExperimentSettings& settings, const std::filesystem::path& output,
                                                 const RunContext& run, Workers& workers, Monitor& monitor);

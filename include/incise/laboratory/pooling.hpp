@@ -14,7 +14,8 @@ namespace incise {
 /// best one without a simulated cut, on all test specimens and on those unlike their calibration; the advice against
 /// what happened; the robust path against the default correction. Nothing is cut or computed anew.
 ///
-///   pooled.json  paths.csv  paths.svg  roc.svg (where there is an area)  reliability.svg  manifest.json
+///   pooled.json  paths.csv  paths.svg  learning.svg (where parts of the calibrations were learned from)  roc.svg
+///   (where there is an area)  reliability.svg  manifest.json
 ///
 /// @param experiments  folders of `experiment`, two or more; they stay as they are.
 /// @returns what pooled.json holds. @throws DataError for a folder without a finished experiment of this version, for
