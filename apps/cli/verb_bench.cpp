@@ -156,6 +156,8 @@ int pool(const CommonOptions& options, const std::vector<std::filesystem::path>&
                robust.at("close_margins_second").get<std::size_t>());
   }
   print_learning(result.at("learning"));
+  if (result.at("advice").is_object())
+    fmt::print("advice; its intervals treat specimens as independent, which those of a series are not\n");
   print_advice(result.at("advice"));
   nlohmann::ordered_json summary{{"pooled", (output / "pooled.json").string()}, {"figure", result.at("figure")}};
   print_result(options, summary);
