@@ -14,7 +14,7 @@ namespace incise::laboratory {
 namespace {
 
 constexpr double kHarmMm = 0.1;
-constexpr std::size_t kFewestSeries = 5;  // below it the ends of an interval would be those of single series
+constexpr std::ptrdiff_t kFewestSeries = 5;  // below it the ends of an interval would be those of single series
 
 /// A specimen's photographed mean |error| along a path; nothing: no closed ring, or not asked for.
 std::optional<double> error_along(const TestedSpecimen& specimen, std::string_view name) {
@@ -79,8 +79,10 @@ PairedErrors paired_errors(std::span<const TestedSeries> series, std::string_vie
 /// Of the mean difference. Specimens of one series share a calibration and an offset of the hand-eye transform, so that
 /// with several series whole ones are drawn anew.
 std::optional<Interval> interval_of(const PairedErrors& errors) {
-  if (errors.differences.size() > 1)
-    return errors.differences.size() >= kFewestSeries ? cluster_bootstrap(errors.differences) : std::nullopt;
+  if (errors.differences.size() > 1) {
+    const auto compared = std::ranges::count_if(errors.differences, [](const auto& one) { return !one.empty(); });
+    return compared >= kFewestSeries ? cluster_bootstrap(errors.differences) : std::nullopt;
+  }
   return paired_t_test(errors.first, errors.second).confidence;
 }
 

@@ -232,7 +232,8 @@ std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>&
       shown.low.push_back(path != nullptr && path->confidence ? path->confidence->low : middle);
       shown.high.push_back(path != nullptr && path->confidence ? path->confidence->high : middle);
     }
-    plot.panels.push_back({fmt::format("{}: less {}, mm (95 %)", of, *paths.best_without_simulation), {shown}});
+    plot.panels.push_back(
+        {fmt::format("{}: difference from {}, mm (95 %)", of, *paths.best_without_simulation), {shown}});
   }
   return category_plot_svg(plot);
 }

@@ -47,7 +47,10 @@ const PathCut* TestedSpecimen::find(std::string_view path) const {
 
 bool is_path_without_simulation(std::string_view name) {
   if (name == kAsPlannedPath) return true;
-  return name != kIncisePath && is_without_simulation(*value_of<RivalPath>(name));
+  if (name == kIncisePath) return false;
+  const std::optional<RivalPath> path = value_of<RivalPath>(name);
+  INCISE_REQUIRE(path.has_value(), fmt::format("expected the name of a path, found {}", name));
+  return is_without_simulation(*path);
 }
 
 std::vector<TestedSpecimen> tested_specimens(const std::vector<Trial>& trials, const std::filesystem::path& truth) {

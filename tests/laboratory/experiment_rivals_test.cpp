@@ -1,5 +1,7 @@
 #include "laboratory/experiment_rivals.hpp"
 
+#include <incise/core/error.hpp>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -130,6 +132,14 @@ TEST(ComparePaths, DrawsWholeSeriesAnewWhereThereAreSeveral) {
   const Interval found = *compare_paths(six).find("incise")->confidence;
   EXPECT_NEAR(0.5 * (found.low + found.high), 0.4, 0.02);
   EXPECT_GT(found.high - found.low, 0.2) << "specimens of a series are alike";
+  const std::vector<TestedSeries> few{three, others, {}, {}, {}, {}};
+  EXPECT_FALSE(compare_paths(few).find("incise")->confidence) << "nothing to compare in four of them";
+}
+
+TEST(ComparePaths, RefusesTheNameOfNoPath) {
+  EXPECT_THROW(static_cast<void>(is_path_without_simulation("another")), InvalidArgument);
+  EXPECT_TRUE(is_path_without_simulation("photographs"));
+  EXPECT_FALSE(is_path_without_simulation("incise"));
 }
 
 TEST(CompareTwo, HoldsOnePathAgainstAnotherOnTheSpecimensThatBothClosed) {

@@ -19,7 +19,8 @@ namespace incise {
 ///
 /// @param experiments  folders of `experiment`, two or more; they stay as they are.
 /// @returns what pooled.json holds. @throws DataError for a folder without a finished experiment of this version, for
-/// experiments of two benches, or with specimens of the same seed; InvalidArgument for fewer than two.
+/// experiments of two benches, with specimens of the same seed, or along different paths; InvalidArgument for fewer
+/// than two.
 [[nodiscard]] nlohmann::ordered_json pool_experiments(const std::vector<std::filesystem::path>& experiments,
                                                       const std::filesystem::path& output, const RunContext& run,
                                                       Monitor& monitor);

@@ -57,8 +57,7 @@ inline void describe_course(Visitor& v, PlanSettings& s) {
   v({"speed_mm_s", "Of the real tool.", "mm/s"}, s.speed_mm_s, {0.1, 50.0});
   v({"power_w",
      "Electrosurgical power: with speed and depth, how fast contact cuts (cut.power_exponent), and how far beside the "
-     "cut "
-     "heat reaches.",
+     "cut heat reaches.",
      "W"},
     s.power_w, {0.0, 120.0, true});
   v.direction("approach", s.approach, "Into the tissue, as camera and surgeon look.");

@@ -11,12 +11,12 @@ import {fixed, isNumber} from "./words.js";
 
 // Each with what it acts on.
 const kSettings = {
-  'plan.speed_mm_s': 'Of the robot. A faster cut gets less energy per area: the simulated tool drags tissue farther.',
-  'cut.speed_mm_s': 'Of the simulated tool. With dullness: how far it drags tissue along.',
-  'cut.dullness': 'How long the tool touches tissue before it is cut. Less: a sharper tool.',
-  'plan.power_w': 'More power cuts faster, and heats more tissue beside the cut.',
-  'specimen.material.youngs_modulus_kpa': 'The tissue\'s stiffness.',
-  'specimen.material.poissons_ratio': 'Near 0.5 tissue keeps its volume; 0: it gives way.',
+  "plan.speed_mm_s": "Of the robot. A faster cut gets less energy per area: the simulated tool drags tissue farther.",
+  "cut.speed_mm_s": "Of the simulated tool. With dullness: how far it drags tissue along.",
+  "cut.dullness": "How long the tool touches tissue before it is cut. Less: a sharper tool.",
+  "plan.power_w": "More power cuts faster, and heats more tissue beside the cut.",
+  "specimen.material.youngs_modulus_kpa": "The tissue's stiffness.",
+  "specimen.material.poissons_ratio": "Near 0.5 tissue keeps its volume; 0: it gives way.",
 };
 const kCuts = [
   ["corrected", "the corrected cuts"],
