@@ -27,7 +27,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"tumor_distance", kRefused, kCloseMarginMm, ">", "mm",
      "Smallest distance from the simulated kerf to the tumour's surface, in any direction."},
     {"lateral_margin", kRefused, kCloseMarginMm, ">", "mm",
-     "Least tissue that the simulated cut leaves beside the tumour's edge."},
+     "Least tissue that the cut is expected to leave beside the tumour's edge: as simulated, and with the errors that "
+     "the case's `compensation` expects beyond the simulation."},
     {"open_layer", kRefused, {}, "", "mm", "A layer within the planned depth in which the simulated ring stayed open."},
     {"contour_surface", kRefused, 5.0, "<=", "mm", "Greatest distance from the tumour's edge to the tumour's surface."},
     {"contour_flipped",
@@ -53,6 +54,9 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"depth", kCaution, 0.9, ">=", "",
      "Least depth of the simulated kerf anywhere along the path, as a share of the planned depth there."},
     {"heat", kCaution, 0.0, ">=", "mm", "Tissue left unheated between the simulated cut and the tumour's edge."},
+    {"simulated_margin", kCaution, kCloseMarginMm, ">", "mm",
+     "Least tissue that the simulated cut alone leaves beside the tumour's edge, where `compensation` expects real cuts "
+     "to err otherwise and then to leave enough."},
     {"painted_skin",
      kCaution,
      {},

@@ -47,6 +47,23 @@ class SectorRing {
   double first_ = 0.0;
 };
 
+/// Mean of each sector; nothing where one is empty.
+std::optional<std::vector<double>> means_of(const SectorRing& ring, const Points& seen, std::span<const double> values,
+                                            std::size_t sectors) {
+  std::vector<double> sums(sectors, 0.0);
+  std::vector<double> counts(sectors, 0.0);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto sector = static_cast<std::size_t>(ring.place_of(seen[i]) + 0.5) % sectors;
+    sums[sector] += values[i];
+    counts[sector] += 1.0;
+  }
+  for (std::size_t k = 0; k < sectors; ++k) {
+    if (counts[k] == 0.0) return std::nullopt;
+    sums[k] /= counts[k];
+  }
+  return sums;
+}
+
 void require_sectors(std::size_t count, std::size_t least) {
   constexpr std::size_t kMost = 360;
   INCISE_REQUIRE(count >= least && count <= kMost,
@@ -65,19 +82,18 @@ std::optional<std::vector<double>> error_profile(const Contour& incision, const 
   const ContourErrors errors =
       contour_errors(flat_in_view(incision, view), edge, settings.target_mm, down, kProfileStepMm);
   const SectorRing ring(edge, view, settings);
-  const auto sectors = static_cast<std::size_t>(settings.sectors);
-  std::vector<double> sums(sectors, 0.0);
-  std::vector<double> counts(sectors, 0.0);
-  for (std::size_t i = 0; i < errors.points.points.size(); ++i) {
-    const auto sector = static_cast<std::size_t>(ring.place_of(errors.points.points[i]) + 0.5) % sectors;
-    sums[sector] += errors.signed_error_mm[i];
-    counts[sector] += 1.0;
-  }
-  for (std::size_t k = 0; k < sectors; ++k) {
-    if (counts[k] == 0.0) return std::nullopt;
-    sums[k] /= counts[k];
-  }
-  return sums;
+  return means_of(ring, errors.points.points, errors.signed_error_mm, static_cast<std::size_t>(settings.sectors));
+}
+
+std::optional<std::vector<double>> sector_means(const Points& places, std::span<const double> values,
+                                                const Contour& tumor_edge, const ProfileSettings& settings) {
+  require_sectors(static_cast<std::size_t>(std::max(0, settings.sectors)), 1);
+  INCISE_REQUIRE(places.size() == values.size(),
+                 fmt::format("expected a value for each place, found {} for {}", values.size(), places.size()));
+  const ViewFrame view = view_along(settings.approach);
+  const SectorRing ring(flat_in_view(tumor_edge, view), view, settings);
+  return means_of(ring, flat_in_view({.points = places}, view).points, values,
+                  static_cast<std::size_t>(settings.sectors));
 }
 
 std::vector<double> values_at(const std::vector<double>& sectors, const Points& places, const Contour& tumor_edge,

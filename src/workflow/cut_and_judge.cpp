@@ -1,5 +1,8 @@
+#include "workflow/layer_line.hpp"
+
 #include <incise/cutting/path_heat.hpp>
 #include <incise/workflow/cut_verdict.hpp>
+#include <incise/workflow/expected_errors.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <algorithm>
@@ -45,14 +48,11 @@ EvaluationSettings evaluation_settings(const Case& settings, ContourKind contour
 LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const ToolPath& intended, const EvaluationSettings& centerline) {
   LayerErrors errors;
   if (!layer.centerline) return errors;
-  Contour lifted = *layer.centerline;
-  for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
   if (settings.plan.kind == PlanKind::Line) {
-    const Evaluation line = evaluate_line(lifted, entry_contour(intended), centerline);
+    const Evaluation line = evaluate_line(lifted_midline(settings, layer), entry_contour(intended), centerline);
     return {line.signed_error_mm, line.abs_error_mm};
   }
-  std::vector<double> values =
-      contour_errors(lifted, intended.tumor_edge, centerline.lateral_margin_mm, centerline.approach, centerline.step_mm).signed_error_mm;
+  std::vector<double> values = layer_line_errors(settings, layer, intended.tumor_edge).signed_error_mm;
   errors.signed_error_mm = summarize(values);
   for (double& value : values) value = std::abs(value);
   errors.abs_error_mm = summarize(values);
@@ -106,7 +106,20 @@ std::optional<double> line_to_edge_mm(const IncisionResult& incision, const Cont
 
 }  // namespace
 
-SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended, std::size_t tets) {
+Contour lifted_midline(const Case& settings, const KerfLayer& layer) {
+  Contour lifted = *layer.centerline;
+  for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
+  return lifted;
+}
+
+ContourErrors layer_line_errors(const Case& settings, const KerfLayer& layer, const Contour& tumor_edge) {
+  const EvaluationSettings centerline = evaluation_settings(settings, ContourKind::Centerline);
+  return contour_errors(lifted_midline(settings, layer), tumor_edge, centerline.lateral_margin_mm, centerline.approach,
+                        centerline.step_mm);
+}
+
+SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended,
+                   std::size_t tets, const SimulatedCut* first) {
   SimulatedCut cut;
   cut.incision = std::move(incision);
   cut.tets = tets;
@@ -129,7 +142,8 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
     if (cut.line_to_edge_mm) cut.thermal_margin_mm = *cut.line_to_edge_mm - cut.thermal_half_width_mm;
   }
   cut.outcome = cut.incision.outcome == Outcome::Success ? cut.centerline.outcome : cut.incision.outcome;
-  cut.verdict = verdict_of_cut(settings, cut);
+  cut.verdict =
+      verdict_of_cut(settings, cut, expected_errors(settings, first != nullptr ? *first : cut, intended.tumor_edge));
   return cut;
 }
 

@@ -1,4 +1,7 @@
+#include "workflow/layer_line.hpp"
+
 #include <incise/core/error.hpp>
+#include <incise/evaluation/error_profile.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/workflow/cut_verdict.hpp>
 
@@ -68,34 +71,60 @@ struct Tissue {
   std::optional<VerdictPlace> at;
 };
 
-void note_line(const Evaluation& line, double off_mm, const std::string& name, Tissue& least) {
-  const ContourErrors& errors = line.errors;
-  for (std::size_t i = 0; i < errors.signed_distance_mm.size(); ++i) {
-    if (errors.signed_distance_mm[i] - off_mm >= least.left_mm) continue;
-    least = {errors.signed_distance_mm[i] - off_mm, name, VerdictPlace{{}, errors.points.points[i], {}}};
+/// What is expected of a line beyond the simulation, at each of its points. @param edge  that the line is measured
+/// from.
+std::vector<double> expected_at(const Case& settings, const ExpectedErrors& expected, const Points& places,
+                                const Contour& edge) {
+  if (!expected.is_any()) return std::vector<double>(places.size(), 0.0);
+  return values_at(expected.beyond_mm, places, edge,
+                   {.approach = settings.plan.approach, .start_direction = settings.plan.start_direction});
+}
+
+/// @param off_mm  from the line to where tissue ends.
+void note_line(const Points& places, const std::vector<double>& distance_mm, const std::vector<double>& beyond_mm,
+               double off_mm, const std::string& name, Tissue& least) {
+  for (std::size_t i = 0; i < distance_mm.size(); ++i) {
+    const double left_mm = distance_mm[i] + beyond_mm[i] - off_mm;
+    if (left_mm < least.left_mm) least = {left_mm, name, VerdictPlace{{}, places[i], {}}};
   }
 }
 
-void note_layers(const Case& settings, const SimulatedCut& cut, Tissue& least) {
+void note_evaluation(const Case& settings, const ExpectedErrors& expected, const Evaluation& line, const Contour& edge,
+                     double off_mm, const std::string& name, Tissue& least) {
+  const Points& places = line.errors.points.points;
+  note_line(places, line.errors.signed_distance_mm, expected_at(settings, expected, places, edge), off_mm, name, least);
+}
+
+void note_layers(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected, Tissue& least) {
   for (std::size_t i = 0; i < cut.layers.size() && i < cut.incision.kerf.layers.size(); ++i) {
     if (!cut.layers[i].signed_error_mm) continue;
     const KerfLayer& layer = cut.incision.kerf.layers[i];
-    const double left_mm = settings.plan.lateral_margin_mm + cut.layers[i].signed_error_mm->min - 0.5 * layer.width_mm;
+    double error_mm = cut.layers[i].signed_error_mm->min;
+    if (expected.is_any()) {
+      const ContourErrors line = layer_line_errors(settings, layer, expected.tumor_edge);
+      const std::vector<double> beyond = expected_at(settings, expected, line.points.points, expected.tumor_edge);
+      error_mm = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < beyond.size(); ++k)
+        error_mm = std::min(error_mm, line.signed_error_mm[k] + beyond[k]);
+    }
+    const double left_mm = settings.plan.lateral_margin_mm + error_mm - 0.5 * layer.width_mm;
     if (left_mm >= least.left_mm) continue;
     const std::string place = fmt::format("{} mm below the skin", layer.depth_mm);
     least = {left_mm, "kerf " + place, VerdictPlace{{}, {}, place}};
   }
 }
 
-Tissue least_tissue(const Case& settings, const SimulatedCut& cut) {
+Tissue least_tissue(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected) {
   Tissue least;
   if (settings.plan.kind == PlanKind::Line) {
     if (cut.line_to_edge_mm)
       least = {*cut.line_to_edge_mm - radius_mm(settings.tool), "mid-line, seen along the approach,", {}};
   } else {
-    note_line(cut.centerline, radius_mm(settings.tool), "mid-line", least);
-    note_line(cut.inner_edge, 0.0, "inner edge, the tool out,", least);
-    if (!cut.incision.kerf.deep_margin) note_layers(settings, cut, least);
+    note_evaluation(settings, expected, cut.centerline, expected.tumor_edge, radius_mm(settings.tool), "mid-line",
+                    least);
+    note_evaluation(settings, expected, cut.inner_edge, cut.incision.final_tumor_edge, 0.0, "inner edge, the tool out,",
+                    least);
+    if (!cut.incision.kerf.deep_margin) note_layers(settings, cut, expected, least);
   }
   return least;
 }
@@ -108,21 +137,34 @@ std::string margin_that_would_do(const Case& settings, double left_mm) {
                      std::floor(10.0 * needed_mm + 1.0) / 10.0);
 }
 
-void judge_margin(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
-  const Tissue least = least_tissue(settings, cut);
-  if (least.left_mm > settings.close_margin_mm) return;
+/// "leaves 2.13 mm of tissue beside the tumour's edge", with as many digits as tell it from the limit.
+std::string tissue_in_words(double left_mm, double limit_mm) {
+  if (left_mm < 0.0) return fmt::format("lies {:.2f} mm inside the tumour's edge", -left_mm);
+  int digits = 2;
+  while (digits < 4 && fmt::format("{:.{}f}", left_mm, digits) == fmt::format("{:.{}f}", limit_mm, digits)) ++digits;
+  return fmt::format("leaves {:.{}f} mm of tissue beside the tumour's edge", left_mm, digits);
+}
+
+void judge_margin(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected, Verdict& verdict) {
+  const double limit_mm = settings.close_margin_mm;
+  const Tissue least = least_tissue(settings, cut, expected);
+  const char* how = expected.is_any() ? ", with the errors that compensation expects of real cuts," : "";
   if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
-  int digits = 2;                             // as many as tell it from the limit
-  while (digits < 4 &&
-         fmt::format("{:.{}f}", least.left_mm, digits) == fmt::format("{:.{}f}", settings.close_margin_mm, digits))
-    ++digits;
-  const std::string found =
-      least.left_mm < 0.0 ? fmt::format("lies {:.2f} mm inside the tumour's edge", -least.left_mm)
-                          : fmt::format("leaves {:.{}f} mm of tissue beside the tumour's edge", least.left_mm, digits);
-  verdict.add("lateral_margin", least.left_mm,
-              fmt::format("the simulated cut's {} {}; more than {} mm of tissue is required{}", least.of, found,
-                          settings.close_margin_mm, margin_that_would_do(settings, least.left_mm)),
-              least.at, settings.close_margin_mm);
+  if (least.left_mm <= limit_mm) {
+    verdict.add(
+        "lateral_margin", least.left_mm,
+        fmt::format("the simulated cut's {}{} {}; more than {} mm of tissue is required{}", least.of, how,
+                    tissue_in_words(least.left_mm, limit_mm), limit_mm, margin_that_would_do(settings, least.left_mm)),
+        least.at, limit_mm);
+    return;
+  }
+  const Tissue simulated = expected.is_any() ? least_tissue(settings, cut, {}) : least;
+  if (simulated.left_mm > limit_mm) return;
+  verdict.add("simulated_margin", simulated.left_mm,
+              fmt::format("the simulated cut's {} {}, and {:.2f} mm only with the errors that compensation expects of "
+                          "real cuts; more than {} mm is required",
+                          simulated.of, tissue_in_words(simulated.left_mm, limit_mm), least.left_mm, limit_mm),
+              simulated.at, limit_mm);
 }
 
 void judge_tumor(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
@@ -207,7 +249,7 @@ void note_outside(const Contour& points, const Contour& polygon, EdgeFit& fit) {
 }  // namespace
 
 std::optional<double> nearest_to_tumor_mm(const Case& settings, const SimulatedCut& cut) {
-  double nearest_mm = least_tissue(settings, cut).left_mm;
+  double nearest_mm = least_tissue(settings, cut, {}).left_mm;
   if (cut.incision.kerf.deep_margin) nearest_mm = std::min(nearest_mm, cut.incision.kerf.deep_margin->nearest_mm);
   return std::isfinite(nearest_mm) ? std::optional(nearest_mm) : std::nullopt;
 }
@@ -232,11 +274,11 @@ std::vector<double> open_layers_mm(const IncisionResult& incision) {
   return depths;
 }
 
-Verdict verdict_of_cut(const Case& settings, const SimulatedCut& cut) {
+Verdict verdict_of_cut(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected) {
   Verdict verdict;
   judge_outcome(cut, verdict);
   judge_tumor(settings, cut, verdict);
-  judge_margin(settings, cut, verdict);
+  judge_margin(settings, cut, expected, verdict);
   judge_layers(cut, verdict);
   judge_depth(settings, cut, verdict);
   judge_heat(cut, verdict);

@@ -404,7 +404,8 @@ class Runner {
 
   /// A cut with what is held against it.
   SimulatedCut judged(IncisionResult incision, const ToolPath& path) const {
-    SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size());
+    SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size(),
+                             study_.as_planned ? &*study_.as_planned : nullptr);
     cut.verdict.add(verdict_before_cut(settings_, *study_.model, made_skin_, study_.stretched->state.positions, path));
     return cut;
   }

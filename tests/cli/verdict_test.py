@@ -89,6 +89,22 @@ class VerdictTest(CommandTest):
         nobody = self.incise("run", "case", "-o", self.out, "--accept", "tumor_distance")
         self.assert_refused(nobody, BAD_CASE, "--accept", "'tumor_distance'", "nobody can accept")
 
+    def test_the_margin_is_judged_where_the_case_expects_its_cut(self):
+        def margins(compensation, status, close_margin_mm=0.2):
+            self.write({"plan": {**small_case.SOUND["plan"], "close_margin_mm": close_margin_mm}, "compensation": compensation})
+            verdict = self.json_of("simulate", "case", "-o", self.out, status=status)["verdict"]
+            return [r for r in verdict["reasons"] if r["id"] in ("lateral_margin", "simulated_margin")]
+
+        self.assertEqual(margins({}, DONE), [], "the simulated cut leaves 0.4 mm")
+        nearer = margins({"residual_mm": [-0.5]}, NOT_ACCEPTABLE)[0]
+        self.assertEqual((nearer["id"], nearer["severity"], nearer["limit"]), ("lateral_margin", "refused", 0.2))
+        self.assertIn("with the errors that compensation expects of real cuts", nearer["message"])
+        self.assertEqual(margins({"residual_mm": [-0.5], "bias_mm": 0.5}, DONE), [], "the two cancel")
+        self.assertEqual(margins({}, NOT_ACCEPTABLE, close_margin_mm=2.2)[0]["id"], "lateral_margin")
+        farther = margins({"residual_mm": [3.0]}, DONE, close_margin_mm=2.2)[0]
+        self.assertEqual((farther["id"], farther["severity"]), ("simulated_margin", "caution"))
+        self.assertAlmostEqual(farther["value"], nearer["value"] + 0.5, delta=1e-6)
+
     def test_a_contour_that_was_shifted_flipped_or_is_of_another_unit_than_the_surface(self):
         for change, expected in ((lambda p: (p[0], p[1] + 8.0, p[2]), "contour_surface"), (lambda p: (-p[0], -p[1], p[2]), "contour_flipped")):
             with self.subTest(expected):

@@ -11,9 +11,12 @@
 namespace incise {
 namespace {
 
+using ::testing::DoubleNear;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 std::vector<std::string> ids_of(const Verdict& verdict) {
   std::vector<std::string> ids;
@@ -60,6 +63,7 @@ SimulatedCut sound_cut() {
   cut.centerline.errors = contour_errors(circle(15.0), circle(10.0), 5.0, -Vec3::UnitZ());
   cut.centerline.signed_error_mm = Summary{.mean = 0.0, .min = -0.1, .max = 0.1};
   cut.centerline.target_mm = 5.0;
+  incision.final_tumor_edge = circle(10.0);
   cut.inner_edge.errors = contour_errors(circle(14.1), circle(10.0), 4.5, -Vec3::UnitZ());
   cut.thermal_half_width_mm = 2.8;
   cut.thermal_margin_mm = 2.1;
@@ -143,6 +147,97 @@ TEST(VerdictOfCut, RefusesTooLittleTissueBesideTheEdgeInTheMidLineTheInnerEdgeOr
   EXPECT_EQ(verdict_of_cut(Case{}, cut).status(), VerdictStatus::Ok) << "the tumour's surface says how near the kerf comes";
   cut.incision.kerf.deep_margin.reset();
   EXPECT_THAT(ids_of(verdict_of_cut(Case{}, cut)), ElementsAre("lateral_margin"));
+}
+
+/// In four sectors; the first about the start direction.
+Case expecting(std::vector<double> residual_mm) {
+  Case settings;
+  settings.compensation.observable = ContourKind::InnerEdge;
+  settings.compensation.residual_mm = std::move(residual_mm);
+  return settings;
+}
+
+TEST(VerdictOfCut, RefusesAMarginThatIsTooThinWithTheErrorsThatCompensationExpects) {
+  const SimulatedCut cut = sound_cut();  // 4.1 mm left beside the edge
+  const auto judged = [&cut](const Case& settings) {
+    return verdict_of_cut(settings, cut, expected_errors(settings, cut, circle(10.0)));
+  };
+  EXPECT_THAT(ids_of(judged(expecting({-1.8}))), IsEmpty());
+  const Verdict verdict = judged(expecting({-2.0}));
+  ASSERT_THAT(ids_of(verdict), ElementsAre("lateral_margin"));
+  EXPECT_NEAR(*verdict.reasons()[0].value, 2.1, 0.02);
+  EXPECT_THAT(verdict.reasons()[0].message,
+              HasSubstr("with the errors that compensation expects of real cuts, leaves"));
+  Case biased;
+  biased.compensation.bias_mm = -2.0;
+  EXPECT_THAT(ids_of(judged(biased)), ElementsAre("lateral_margin"));
+  biased.compensation.method = CompensationMethod::Paper;
+  EXPECT_THAT(ids_of(judged(biased)), IsEmpty()) << "it knows no bias";
+}
+
+TEST(VerdictOfCut, LooksForTheThinPlaceWhereItIsExpected) {
+  const SimulatedCut cut = sound_cut();
+  const Case settings = expecting({0.0, 0.0, -2.5, 0.0});
+  const Verdict verdict = verdict_of_cut(settings, cut, expected_errors(settings, cut, circle(10.0)));
+  ASSERT_THAT(ids_of(verdict), ElementsAre("lateral_margin"));
+  EXPECT_NEAR(*verdict.reasons()[0].value, 1.6, 0.02);
+  const Vec3 at = *verdict.reasons()[0].at->position_mm;
+  EXPECT_LT(at.dot(settings.plan.start_direction), -0.99 * at.norm()) << "opposite the start";
+}
+
+TEST(VerdictOfCut, CautionsWhereTheSimulationAloneLeavesTooLittle) {
+  SimulatedCut cut = sound_cut();
+  cut.inner_edge.errors = contour_errors(circle(11.8), circle(10.0), 4.5, -Vec3::UnitZ());
+  const Case settings = expecting({0.6});
+  const Verdict verdict = verdict_of_cut(settings, cut, expected_errors(settings, cut, circle(10.0)));
+  ASSERT_THAT(ids_of(verdict), ElementsAre("simulated_margin"));
+  EXPECT_EQ(verdict.status(), VerdictStatus::Caution);
+  EXPECT_NEAR(*verdict.reasons()[0].value, 1.8, 0.02);
+  EXPECT_THAT(verdict.reasons()[0].message, HasSubstr("leaves 1.80 mm"));
+  EXPECT_THAT(verdict.reasons()[0].message, HasSubstr("and 2.40 mm only with"));
+  EXPECT_THAT(ids_of(verdict_of_cut(settings, cut)), ElementsAre("lateral_margin")) << "nothing is expected beyond it";
+}
+
+TEST(VerdictOfCut, ExpectsLayersToErrAsTheRestDoes) {
+  SimulatedCut cut = sound_cut();
+  cut.incision.kerf.deep_margin.reset();
+  for (KerfLayer& layer : cut.incision.kerf.layers) {
+    layer.centerline = circle(15.0, -layer.depth_mm * Vec3::UnitZ());
+  }
+  cut.incision.kerf.layers[3].centerline = circle(13.0, -5.0 * Vec3::UnitZ());
+  cut.layers[3].signed_error_mm->min = -2.0;  // 5.0 - 2.0 - 0.9 of kerf
+  const Case settings = expecting({0.5});
+  EXPECT_THAT(ids_of(verdict_of_cut(settings, cut, expected_errors(settings, cut, circle(10.0)))),
+              ElementsAre("simulated_margin"));
+  const Case inwards = expecting({0.0, 0.0, 0.5, 0.0});
+  EXPECT_THAT(ids_of(verdict_of_cut(inwards, cut, expected_errors(inwards, cut, circle(10.0)))),
+              ElementsAre("lateral_margin"));
+}
+
+TEST(ExpectedErrors, AreBiasResidualAndWhatTheShareLeavesOfTheFirstCut) {
+  SimulatedCut first = sound_cut();
+  first.incision.centerline = circle(14.0);
+  first.centerline.errors = contour_errors(circle(14.0), circle(10.0), 5.0, -Vec3::UnitZ());
+  first.centerline.abs_error_mm = Summary{.mean = 1.0};
+  Case settings;
+  EXPECT_FALSE(expected_errors(settings, first, circle(10.0)).is_any());
+  settings.compensation.bias_mm = 0.2;
+  settings.compensation.residual_mm = {0.1, 0.2, 0.3, 0.4};
+  EXPECT_THAT(
+      expected_errors(settings, first, circle(10.0)).beyond_mm,
+      ElementsAre(DoubleNear(0.3, 1e-12), DoubleNear(0.4, 1e-12), DoubleNear(0.5, 1e-12), DoubleNear(0.6, 1e-12)));
+  settings.compensation.simulated_share = 0.5;  // half of -1.0 + 0.2 mm is taken back
+  EXPECT_THAT(expected_errors(settings, first, circle(10.0)).beyond_mm,
+              ElementsAre(DoubleNear(0.7, 0.01), DoubleNear(0.8, 0.01), DoubleNear(0.9, 0.01), DoubleNear(1.0, 0.01)));
+  Case by_photographs;
+  by_photographs.compensation.method = CompensationMethod::Profile;
+  by_photographs.compensation.photographed_mm = {-0.4};
+  const ExpectedErrors expected = expected_errors(by_photographs, first, circle(10.0));
+  EXPECT_THAT(expected.beyond_mm, SizeIs(36));
+  EXPECT_THAT(expected.beyond_mm, Each(DoubleNear(0.6, 0.01))) << "-0.4 where -1.0 mm is simulated";
+  first.incision.is_closed_loop = false;
+  first.incision.kerf.layers.clear();
+  EXPECT_FALSE(expected_errors(settings, first, circle(10.0)).is_any()) << "no ring to take a share of";
 }
 
 TEST(VerdictOfCut, CautionsOfHeatThatReachesEdgeOrSurface) {

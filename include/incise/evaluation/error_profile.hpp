@@ -3,6 +3,7 @@
 #include <incise/geometry/contour.hpp>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace incise {
@@ -25,6 +26,13 @@ struct ProfileSettings {
 /// @note O(points · edge points); points 0.1 mm apart.
 [[nodiscard]] std::optional<std::vector<double>> error_profile(const Contour& incision, const Contour& tumor_edge,
                                                                const ProfileSettings& settings);
+
+/// The same of values that are given place by place, seen along the approach.
+/// @returns one mean for each sector; nothing where a sector is empty.
+/// @throws InvalidArgument for settings out of range or another number of values than places. O(places).
+[[nodiscard]] std::optional<std::vector<double>> sector_means(const Points& places, std::span<const double> values,
+                                                              const Contour& tumor_edge,
+                                                              const ProfileSettings& settings);
 
 /// The other way round: what a profile says of a place, by its direction from the middle of the tumour edge. Linear
 /// between the middles of neighbouring sectors, round the ring; one sector says the same everywhere.

@@ -3,20 +3,24 @@
 #include <incise/core/verdict.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/workflow/case.hpp>
+#include <incise/workflow/expected_errors.hpp>
 #include <incise/workflow/products.hpp>
 
 namespace incise {
 
-/// What a simulated cut itself holds against its path: its outcome, planned layers that stayed open, the kerf's distance from the tumour's
-/// surface and from its edge, depth, heat, and how well it was solved. Limits are those of verdict_rules(); the close margin and the
-/// planned depth are the case's.
+/// What a simulated cut itself holds against its path: its outcome, planned layers that stayed open, the kerf's
+/// distance from the tumour's surface and from its edge, depth, heat, and how well it was solved. Limits are those of
+/// verdict_rules(); the close margin and the planned depth are the case's.
 /// @param cut  measured and evaluated; its own `verdict` is not read.
-/// @note Without the tumour's surface the edge counts in every layer that was cut, as if the tumour went straight down from it.
-/// Source: docs/models/verdict.md; the close margin: [Paper, III-A.1].
-[[nodiscard]] Verdict verdict_of_cut(const Case& settings, const SimulatedCut& cut);
+/// @param expected  of real cuts beyond simulated ones: the margin beside the edge is judged with it. The distance to
+///                  the tumour's surface is the simulated kerf's.
+/// @note Without the tumour's surface the edge counts in every layer that was cut, as if the tumour went straight down
+/// from it. Source: docs/models/verdict.md; the close margin: [Paper, III-A.1].
+[[nodiscard]] Verdict verdict_of_cut(const Case& settings, const SimulatedCut& cut,
+                                     const ExpectedErrors& expected = {});
 
-/// Least tissue that a cut leaves between its kerf and the tumour, mm; negative: the kerf enters it. The lesser of what
-/// `lateral_margin` and `tumor_distance` hold against the close margin. Absent: nothing was measured.
+/// Least tissue that a simulated cut leaves between its kerf and the tumour, mm; negative: the kerf enters it. The
+/// lesser of what `simulated_margin` and `tumor_distance` hold against the close margin. Absent: nothing was measured.
 [[nodiscard]] std::optional<double> nearest_to_tumor_mm(const Case& settings, const SimulatedCut& cut);
 
 /// Share of the planned depth that the kerf reaches at each place of its depth profile (N, >= 0). Planned is the tip's depth on the path, or

@@ -95,6 +95,11 @@ export const kWaysOut = {
     "plan",
     "hold",
   ],
+  simulated_margin: [
+    "Simulation and photographs disagree about the margin. Raise the lateral margin, or accept the caution if the " +
+      "photographs are of cuts like this one.",
+    "plan",
+  ],
   open_layer: [
     "An open layer: at that depth the ring does not close, so a bridge of tissue still holds the piece. Raise the " +
       "overlap, or make the mesh finer.",
