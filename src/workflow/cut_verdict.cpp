@@ -148,7 +148,9 @@ std::string tissue_in_words(double left_mm, double limit_mm) {
 void judge_margin(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected, Verdict& verdict) {
   const double limit_mm = settings.close_margin_mm;
   const Tissue least = least_tissue(settings, cut, expected);
-  const char* how = expected.is_any() ? ", with the errors that compensation expects of real cuts," : "";
+  const char* comma = least.of.ends_with(',') ? "" : ",";
+  const std::string how =
+      expected.is_any() ? fmt::format("{} with the errors that compensation expects of real cuts,", comma) : "";
   if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
   if (least.left_mm <= limit_mm) {
     verdict.add(

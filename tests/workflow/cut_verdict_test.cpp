@@ -167,7 +167,7 @@ TEST(VerdictOfCut, RefusesAMarginThatIsTooThinWithTheErrorsThatCompensationExpec
   ASSERT_THAT(ids_of(verdict), ElementsAre("lateral_margin"));
   EXPECT_NEAR(*verdict.reasons()[0].value, 2.1, 0.02);
   EXPECT_THAT(verdict.reasons()[0].message,
-              HasSubstr("with the errors that compensation expects of real cuts, leaves"));
+              HasSubstr("tool out, with the errors that compensation expects of real cuts, leaves"));
   Case biased;
   biased.compensation.bias_mm = -2.0;
   EXPECT_THAT(ids_of(judged(biased)), ElementsAre("lateral_margin"));
