@@ -1,6 +1,6 @@
+#include "bench_options.hpp"
+#include "experiment_output.hpp"
 #include "option_checks.hpp"
-#include "options.hpp"
-#include "paths_table.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/laboratory/experiment.hpp>
@@ -15,51 +15,6 @@
 
 namespace incise::cli {
 namespace {
-
-void print_gain(const char* name, const nlohmann::ordered_json& summary) {
-  if (summary.at("pairs").get<std::size_t>() == 0) {
-    fmt::print("{:<34} no specimen was cut twice\n", name);
-    return;
-  }
-  const auto worse = summary.at("worse").get<std::size_t>();
-  const auto opened = summary.at("opened").get<std::size_t>();
-  std::string said = worse == 0 ? "none worse" : fmt::format("{} worse", worse);
-  if (worse > opened) said += fmt::format(", by at most {:.2f} mm", summary.at("most_worse_mm").get<double>());
-  if (opened > 0) said += fmt::format(", {} of them with an open ring", opened);
-  fmt::print("{:<34} {:.2f} -> {:.2f} mm ({:.0f} % less); cut twice: {}, {}\n", name,
-             summary.at("mean_before_mm").get<double>(), summary.at("mean_after_mm").get<double>(),
-             summary.at("gain_percent").get<double>(), summary.at("pairs").get<std::size_t>(), said);
-}
-
-/// What a person wants of it; everything is in study.json and the report.
-void print_summary(const nlohmann::ordered_json& result) {
-  fmt::print("VIRTUAL specimens, mean |error| of the photographs\n");
-  print_gain("as planned -> corrected", result);
-  if (result.at("uncorrected").get<std::size_t>() > 0 && result.at("pairs").get<std::size_t>() > 0) {
-    fmt::print("{:<34} {:.0f} % less; {} cut as planned alone\n", "  of all that were cut",
-               result.at("gain_percent_of_all").get<double>(), result.at("uncorrected").get<std::size_t>());
-  }
-  print_paths("path", result);
-  if (result.contains("unlike") && result.at("unlike").at("rivals").at("as_planned").at("pairs").get<std::size_t>() > 0)
-    print_paths("of these, unlike the calibration's", result.at("unlike"));
-  if (result.contains("known_physics") && result.at("known_physics").at("mean_after_mm").is_number()) {
-    fmt::print("{:<34} {:.2f} mm ({} specimens, from the truth)\n", "physics known",
-               result.at("known_physics").at("mean_after_mm").get<double>(),
-               result.at("known_physics").at("specimens").get<std::size_t>());
-  }
-  print_learning(result.at("learning"));
-  print_advice(result.at("advice"));
-  for (const auto& one : result.at("left_out_of_calibration")) {
-    fmt::print("{} (calibrate): left out of the fit: {}\n", one.at("name").get<std::string>(),
-               one.at("reason").get<std::string>());
-  }
-  for (const auto& row : result.at("table_2")) {
-    if (row.at("ended_at").is_null()) continue;
-    fmt::print("{} ({}), {}: ended at {}\n", row.at("specimen").get<std::string>(), row.at("role").get<std::string>(),
-               row.at("cut").get<std::string>(), row.at("ended_at").get<std::string>().substr(0, 100));
-  }
-  fmt::print("report: {}\n", result.at("report").get<std::string>());
-}
 
 /// Whether they name one folder, which may not be there yet, however they are spelt.
 bool is_same_folder(const std::filesystem::path& a, const std::filesystem::path& b) {
@@ -76,15 +31,11 @@ int study(const ExperimentSettings& settings, const CommonOptions& options) {
   const std::filesystem::path root = options.required_output("experiment");
   if (!settings.truth.empty() && is_same_folder(settings.truth, root))
     throw CaseError("command line", "--truth", settings.truth.string() + ", the output", "a folder of its own");
-  nlohmann::ordered_json result;
-  try {
-    Console console(options.level());  // its bar is gone before the summary
-    Workers workers(options.threads);
-    result = experiment(settings, root, options.context(), workers, console);
-  } catch (const Cancelled& error) {
-    throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
-  }
-  options.json ? print_result(options, result) : print_summary(result);
+  const nlohmann::ordered_json result =
+      run_in_folder(options, "experiment", [&](const auto& folder, const auto& context, auto& workers, auto& console) {
+        return experiment(settings, folder, context, workers, console);
+      });
+  options.json ? print_result(options, result) : print_experiment(result);
   return result.at("pairs").get<std::size_t>() > 0 ? kDone : kNotAcceptable;
 }
 

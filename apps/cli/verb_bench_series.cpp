@@ -1,0 +1,116 @@
+#include "bench_options.hpp"
+#include "bench_output.hpp"
+#include "experiment_output.hpp"
+#include "option_checks.hpp"
+
+#include <incise/core/error.hpp>
+#include <incise/laboratory/acceptance.hpp>
+#include <incise/laboratory/factor_screening.hpp>
+#include <incise/laboratory/pooling.hpp>
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace incise::cli {
+namespace {
+
+int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
+  const nlohmann::ordered_json result =
+      run_in_folder(options, "acceptance", [&](const auto& root, const auto& context, auto& workers, auto& console) {
+        return accept_bench(settings, root, context, workers, console);
+      });
+  if (options.json) {
+    print_result(options, result);
+    return kDone;
+  }
+  print_acceptance(result);
+  nlohmann::ordered_json summary = result.at("summary");
+  print_result(options, summary);
+  return kDone;
+}
+
+int screen(const CommonOptions& options, const ScreeningSettings& settings) {
+  const nlohmann::ordered_json result =
+      run_in_folder(options, "factors", [&](const auto& root, const auto& context, auto& workers, auto& console) {
+        return screen_factors(settings, root, context, workers, console);
+      });
+  if (options.json) {
+    print_result(options, result);
+    return kDone;
+  }
+  print_factors(result);
+  nlohmann::ordered_json summary{{"cuts", result.at("cuts")}, {"measured", result.at("measured")}};
+  summary["left_out"] = result.at("left_out");
+  if (!result.at("pairs").empty()) summary["least_p_of_pairs"] = result.at("pairs").front().at("p");
+  summary["figure"] = result.at("figure");
+  print_result(options, summary);
+  return kDone;
+}
+
+int pool(const CommonOptions& options, const std::vector<std::filesystem::path>& experiments) {
+  const std::filesystem::path output = options.required_output("pooled");
+  refuse_input_as_output("-o", output, experiments);
+  Console console(options.level());
+  const nlohmann::ordered_json result = pool_experiments(experiments, output, options.context(), console);
+  if (options.json) {
+    print_result(options, result);
+    return kDone;
+  }
+  print_pooled(result);
+  nlohmann::ordered_json summary{{"pooled", (output / "pooled.json").string()}, {"figure", result.at("figure")}};
+  print_result(options, summary);
+  return kDone;
+}
+
+}  // namespace
+
+void add_bench_series(Application& application, CLI::App& bench) {
+  auto accepted = std::make_shared<AcceptanceSettings>();
+  CLI::App* verb = application.add_verb_to(
+      bench, "accept",
+      "Cut specimens of laboratory 2 as planned and along the paper's correction, to judge the laboratory without the "
+      "planner that it will judge. Run it again to continue where it stopped",
+      "incise bench accept --seed 1 -o acceptance",
+      [accepted](const CommonOptions& options) { return accept(options, *accepted); });
+  verb->add_option("--specimens", accepted->specimens, "1 to 200; their seeds count up from --seed")
+      ->check(whole_between("--specimens", 1, 200));
+  add_factors(*verb, kVaries, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
+  verb->add_option("--speed-mm-s", accepted->speed_mm_s, "Of every cut; by default as prescribed")
+      ->check(CLI::Range(1.0, 15.0));
+  verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
+      ->check(CLI::Range(1.0, 120.0));
+  add_overrides(*verb, accepted->overrides);
+  verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut as planned alone");
+
+  auto screened = std::make_shared<ScreeningSettings>();
+  verb =
+      application.add_verb_to(bench, "factors",
+                              "Find which factors of laboratory 2 drive the error as planned: a fractional "
+                              "factorial of up to 32 cuts of each specimen. Run it again to continue where it stopped",
+                              "incise bench factors --seed 1 -o factors",
+                              [screened](const CommonOptions& options) { return screen(options, *screened); });
+  verb->add_option("--specimens", screened->specimens, "1 to 24; their seeds count up from --seed")
+      ->check(whole_between("--specimens", 1, 24));
+  add_factors(
+      *verb,
+      "Of laboratory 2: those to switch; the others stay off. By default all, by 32 cuts of each specimen; up to "
+      "8 need 16, 3 or 4 need 8, two need 4",
+      [screened](second_bench::Factors factors) {
+        if (factors.size() < 2)
+          throw CaseError("command line", "--factors", fmt::format("{} of them", factors.size()),
+                          "at least two: with one, chance is not known");
+        screened->factors = std::move(factors);
+      });
+  add_overrides(*verb, screened->overrides);
+
+  auto pooled = std::make_shared<std::vector<std::filesystem::path>>();
+  verb = application.add_verb_to(bench, "pool",
+                                 "Take several finished experiments together: every path against the best one without "
+                                 "simulation, and the advice against what happened",
+                                 "incise bench pool series1 series2 -o pooled",
+                                 [pooled](const CommonOptions& options) { return pool(options, *pooled); });
+  verb->add_option("experiments", *pooled, "Folders of `incise experiment`, two or more")->required()->expected(2, -1);
+}
+
+}  // namespace incise::cli
