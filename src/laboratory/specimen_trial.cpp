@@ -12,6 +12,7 @@
 #include <incise/steps/cut_steps.hpp>
 #include <incise/steps/robot_steps.hpp>
 #include <incise/steps/tissue_steps.hpp>
+#include <incise/storage/run_folder.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -306,6 +307,11 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
   return result;
 }
 
+void SpecimenTrial::begin_run(const std::filesystem::path& folder) const {
+  const std::filesystem::path corrected = at("compensated");
+  take_products(folder != corrected && std::filesystem::exists(corrected) ? corrected : at("planned"), folder);
+}
+
 SecondCut SpecimenTrial::cut_again(const std::filesystem::path& file, const std::filesystem::path& folder,
                                    const std::string& tag, bool is_simulated) {
   const std::filesystem::path path = folder / "correction/path.json";
@@ -317,7 +323,8 @@ SecondCut SpecimenTrial::cut_again(const std::filesystem::path& file, const std:
                   words,
                   {file, at("tumor.csv"), at("lab/ct")},
                   {path},
-                  [=](const steps::StepContext& context) {
+                  [=, this](const steps::StepContext& context) {
+                    begin_run(folder);
                     const CaseFile of = read_case_with_inputs(file);
                     return is_simulated ? steps::compensate_case({of, folder, {}}, std::nullopt, context)
                                         : steps::run_stages({of, folder, {.until = Stage::Compensate}}, context);
@@ -340,7 +347,8 @@ TrialCut SpecimenTrial::cut_robustly(const std::filesystem::path& file, const st
                   words,
                   {file, at("tumor.csv"), at("lab/ct"), known.calibration},
                   {path},
-                  [=](const steps::StepContext& context) {
+                  [=, this](const steps::StepContext& context) {
+                    begin_run(folder);
                     return steps::compensate_case(
                         {read_case_with_inputs(file), folder, {}},
                         steps::RobustRequest{.calibration = steps::read_calibration_input(known)}, context);

@@ -104,6 +104,8 @@ class SpecimenTrial {
   bool read();
   bool find_shape();
   bool find_place();
+  /// What an earlier run of this specimen has kept is there for the next one in another folder.
+  void begin_run(const std::filesystem::path& folder) const;
   void write_edge(const nlohmann::ordered_json& registration) const;
 
   TrialSetup setup_;

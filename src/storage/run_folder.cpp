@@ -103,6 +103,14 @@ void take_verdict_from(const std::filesystem::path& file) {
 
 }  // namespace
 
+void take_products(const std::filesystem::path& from, const std::filesystem::path& to) {
+  EntryFolder there(from / "cache"), here(to / "cache");
+  for (const char* name : kProducts) {
+    if (here.holds(name)) continue;
+    if (const std::optional<std::string> entry = there.load(name)) here.save(name, *entry);
+  }
+}
+
 RunFolder::RunFolder(CaseFile file, std::filesystem::path root, RunContext context)
     : file_(std::move(file)),
       root_(std::move(root)),

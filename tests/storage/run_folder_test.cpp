@@ -4,6 +4,7 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
+#include <incise/io/entry_folder.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/path_io.hpp>
@@ -161,6 +162,18 @@ TEST_F(RunFolderTest, KeepsItsCacheInTheFolderSoThatItMayBeMoved) {
   RunFolder moved(read(), folder_ / "moved", {});
   EXPECT_TRUE(moved.cache().find<ToolPath>("plan", key, quiet));
   EXPECT_FALSE(moved.has_products());
+}
+
+TEST_F(RunFolderTest, ARunTakesTheProductsThatAnotherHasKeptAndLeavesItsOwn) {
+  const std::string theirs = std::string(kCacheMagic) + "theirs", own = std::string(kCacheMagic) + "own";
+  EntryFolder from(folder_ / "a/cache"), to(folder_ / "b/cache");
+  for (const char* name : {"mesh", "plan", "verdicts"}) from.save(name, theirs);
+  to.save("plan", own);
+  take_products(folder_ / "a", folder_ / "b");
+  EXPECT_EQ(to.load("mesh"), theirs);
+  EXPECT_EQ(to.load("plan"), own);
+  EXPECT_FALSE(to.holds("verdicts")) << "what was judged there";
+  EXPECT_NO_THROW(take_products(folder_ / "none", folder_ / "b"));
 }
 
 TEST_F(RunFolderTest, AScanIsKnownByItsContentAndHowItIsRead) {
