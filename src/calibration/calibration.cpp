@@ -131,6 +131,8 @@ void describe(Visitor& v, CalibratedSpecimen& s) {
   v.derived("photographed_mean_abs_mm", s.photographed.mean_mm, "Mean |error| of the photograph.");
   v.derived("photographed_max_abs_mm", s.photographed.max_mm, "Greatest |error| of the photograph.");
   v({"photographed_mean_signed_mm", "Mean signed error of the photograph.", "mm"}, s.signed_mean_mm, kAnatomyErrorMm);
+  v({"moved_mean_mm", "How far the path that was cut lies outside the planned one, mean; none: it is that.", "mm"},
+    s.moved_mean_mm, kAnatomyErrorMm);
   v({"youngs_modulus_kpa", "Reference: the case's, or what the pull makes of it.", "kPa"}, s.youngs_modulus_kpa,
     {kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
   v({"stretch_force_n", "Measured pull.", "N"}, s.stretch_force_n, kForceN);

@@ -67,7 +67,8 @@ CalibratedRange range_of(const Calibration& calibration) {
     if (specimen.stretch_force_n) range.youngs_modulus_kpa.push_back(specimen.youngs_modulus_kpa);
     if (specimen.stretch_force_n && specimen.stretch_mm > 0.0)
       range.compliance_mm_n.push_back(specimen.stretch_mm / *specimen.stretch_force_n);
-    if (specimen.signed_mean_mm) range.signed_error_mm.push_back(*specimen.signed_mean_mm);
+    if (specimen.signed_mean_mm)
+      range.signed_error_mm.push_back(*specimen.signed_mean_mm - specimen.moved_mean_mm.value_or(0.0));
     if (!specimen.registration) continue;
     range.registration_rmse_mm.push_back(specimen.registration->rmse_mm);
     range.registration_scale.push_back(specimen.registration->scale);

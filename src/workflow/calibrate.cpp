@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 
 namespace incise {
@@ -30,7 +31,7 @@ class CalibrationRunner {
 
   Calibration run() {
     require_one_rule();
-    for (const Subject& subject : subjects_) prepare(*subject.of);
+    for (Subject& subject : subjects_) prepare(*subject.of, subject.moved_mm);
     calibration_.method = request_.method;
     calibration_.reference_step_s = subjects_.front().of->settings.cut.reference_step_s;
     calibration_.cut_rule = subjects_.front().of->settings.cut.rule;
@@ -49,6 +50,7 @@ class CalibrationRunner {
 
   struct Subject {
     const CalibrationSubject* of = nullptr;
+    std::vector<double> moved_mm = {};  ///< see CalibrationBody::moved_mm
   };
 
   void require_one_rule() const {
@@ -63,9 +65,10 @@ class CalibrationRunner {
     }
   }
 
-  void prepare(const CalibrationSubject& subject) {
+  void prepare(const CalibrationSubject& subject, std::vector<double>& moved_mm) {
     try {
       bodies_.push_back(std::make_unique<CalibrationBody>(subject, workers_, monitor_));
+      moved_mm = bodies_.back()->moved_mm();
     } catch (const CaseError& error) {
       throw error.in_file(subject.case_file);
     }
@@ -79,6 +82,9 @@ class CalibrationRunner {
     specimen.held = bodies_.back()->digest();
     specimen.youngs_modulus_kpa = subject.settings.material.youngs_modulus_kpa * bodies_.back()->reference_stiffness();
     measure_photograph(subject, specimen);
+    if (!moved_mm.empty())
+      specimen.moved_mean_mm =
+          std::accumulate(moved_mm.begin(), moved_mm.end(), 0.0) / static_cast<double>(moved_mm.size());
     // A mirrored picture shows now, not after minutes of simulation.
     PictureMatchSettings rough;
     rough.edge_sd_mm = kEdgeBeforeCutSdMm;
@@ -252,6 +258,13 @@ class CalibrationRunner {
     monitor_.message(Severity::Warning, "caution: photo_specimen: " + message);
   }
 
+  /// As if it had been cut along the planned path: a path and its cut move together.
+  [[nodiscard]] std::vector<double> as_if_planned(std::size_t s, std::vector<double> profile) const {
+    const std::vector<double>& moved = subjects_[s].moved_mm;
+    for (std::size_t i = 0; i < profile.size() && !moved.empty(); ++i) profile[i] -= moved[i];
+    return profile;
+  }
+
   /// The start direction of the simulation, as it lies in the photograph.
   [[nodiscard]] std::vector<double> photographed_profile(std::size_t s) const {
     const CalibrationSubject& subject = *subjects_[s].of;
@@ -268,7 +281,7 @@ class CalibrationRunner {
       throw DataError(subject.photograph_file, "points", "an incision that does not go round the tumour's middle",
                       "a ring round the tumour");
     }
-    return std::move(*errors);
+    return as_if_planned(s, std::move(*errors));
   }
 
   /// Empty: the ring did not part at the skin, or does not go round the tumour's middle.
@@ -317,7 +330,7 @@ class CalibrationRunner {
         profile = midline_profile(s, runs[i]);
         for (std::size_t j = 0; j < profile.size(); ++j) profile[j] += beside[j];
       }
-      profiles.push_back({runs[i].drag_length_mm(), factors_[i], std::move(profile)});
+      profiles.push_back({runs[i].drag_length_mm(), factors_[i], as_if_planned(s, std::move(profile))});
     }
     return profiles;
   }

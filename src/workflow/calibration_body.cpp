@@ -97,6 +97,19 @@ double CalibrationBody::reference_stiffness() const {
   return measured ? *measured / simulated_force_n_ : 1.0;
 }
 
+std::vector<double> CalibrationBody::moved_mm() const {
+  if (!given_path_) return {};
+  ProfileSettings profile = profile_of_inner_edge(subject_.settings);
+  profile.target_mm = subject_.settings.plan.lateral_margin_mm;
+  const std::optional<std::vector<double>> planned = error_profile(entry_contour(*study_.plan), tumor_edge(), profile);
+  std::optional<std::vector<double>> moved = error_profile(entry_contour(*given_path_), tumor_edge(), profile);
+  if (!planned || !moved)
+    throw CaseError("case", "path", "a path that does not go round the middle of the tumour's edge",
+                    "a ring round the tumour, as the planned one");
+  for (std::size_t i = 0; i < moved->size(); ++i) (*moved)[i] -= (*planned)[i];
+  return std::move(*moved);
+}
+
 RingCovariates CalibrationBody::ring() const {
   return ring_covariates(subject_.settings, *study_.model, study_.stretched->state.positions, tumor_edge(),
                          subject_.settings.material.youngs_modulus_kpa * reference_stiffness());

@@ -37,6 +37,9 @@ class CalibrationBody {
   [[nodiscard]] double simulated_force_n() const { return simulated_force_n_; }
   /// How far the case displaces what it pulls, mm.
   [[nodiscard]] double stretched_by_mm() const;
+  /// How far the case's own path lies outside the planned one, by sector, mm; empty: the cut follows the plan.
+  /// @throws CaseError for a path that does not go round the middle of the tumour's edge.
+  [[nodiscard]] std::vector<double> moved_mm() const;
   /// Its covariates, the modulus being that of the reference.
   [[nodiscard]] RingCovariates ring() const;
   /// Of all that its cuts depend on beside their setting.

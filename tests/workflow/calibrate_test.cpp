@@ -3,6 +3,7 @@
 
 #include <incise/core/error.hpp>
 #include <incise/workflow/calibrate.hpp>
+#include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -23,6 +24,8 @@ constexpr double kTumorRadiusMm = 4.0;
 class SoftBlock : public Inputs {
  public:
   explicit SoftBlock(double phase) : phase_(phase) {}
+  std::optional<ToolPath> read_given_path() override { return own_path; }
+  std::optional<ToolPath> own_path;
   CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
   std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return make_block({32, 32, 6}, {24, 24, 4}); }
   std::optional<Contour> read_tumor_edge() override {
@@ -255,6 +258,54 @@ TEST_F(CalibrateBlocks, TheFitFindsTheDragLengthAndTheStiffnessIsThatOfTheForce)
   EXPECT_GT(fit.fit->bias_mm.high, 0.2);
   EXPECT_NEAR(fit.chosen->dullness, drag.mean / (13.0 * 0.02), 1e-9);
   EXPECT_LT(fit.fit->specimens[0].check_rms_mm.value(), 0.35);  // the mesh's grain is in it
+}
+
+TEST_F(CalibrateBlocks, APhotographOfAnotherPathCountsAsIfThePlannedOneHadBeenCut) {
+  const testing::PortableKernels portable;
+  subjects_.pop_back();
+  const auto photographed_along = [&](const std::optional<ToolPath>& path) {
+    first_.own_path = path;
+    const CalibrationRun cut = run(grid({13.0}, {2.2 / (13.0 * 0.02)})).specimens[0].runs[0];
+    subjects_[0].photographed.tumor_edge = cut.final_tumor_edge;
+    subjects_[0].photographed.incision = *cut.inner_edge;
+    const Calibration fitted = run({});
+    return std::pair(fitted.specimens[0], fitted.fit->specimens[0]);
+  };
+  const auto mean = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  const auto [specimen, planned] = photographed_along(std::nullopt);
+  EXPECT_FALSE(specimen.moved_mean_mm);
+  Workers workers(1);
+  ToolPath path =
+      *run_study(subjects_[0].settings, first_, first_cache_, {.until = Stage::Plan}, workers, silent_).plan;
+  for (Waypoint& waypoint : path.waypoints) {
+    Vec3 out = waypoint.position_mm - Vec3(16.0, 16.0, 6.0);
+    out.z() = 0.0;
+    waypoint.position_mm += 0.6 * out.normalized();
+  }
+  const auto [moved_specimen, moved] = photographed_along(path);
+  EXPECT_NEAR(*moved_specimen.moved_mean_mm, 0.6, 0.02);
+  constexpr double kGrainMm = 0.25;  // tets of 1.3 mm
+  EXPECT_NEAR(*moved_specimen.signed_mean_mm - *specimen.signed_mean_mm, 0.6, kGrainMm) << "what the photograph shows";
+  EXPECT_NEAR(mean(moved.observed_mm), mean(planned.observed_mm), kGrainMm);
+  EXPECT_NEAR(mean(moved.fitted_mm), mean(planned.fitted_mm), kGrainMm);
+}
+
+TEST_F(CalibrateBlocks, RefusesAPathThatDoesNotGoRoundTheTumour) {
+  subjects_.pop_back();
+  Workers workers(1);
+  ToolPath path =
+      *run_study(subjects_[0].settings, first_, first_cache_, {.until = Stage::Plan}, workers, silent_).plan;
+  for (Waypoint& waypoint : path.waypoints)
+    waypoint.position_mm = Vec3(8, 8, 6) + 0.3 * (waypoint.position_mm - Vec3(16, 16, 6));
+  first_.own_path = path;
+  try {
+    run({});
+    FAIL() << "expected a refusal";
+  } catch (const CaseError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("path: found a path that does not go round"));
+  }
 }
 
 TEST_F(CalibrateBlocks, LooksHalfWayToTheFirstFailureWhereTheAnswerMayLieThere) {

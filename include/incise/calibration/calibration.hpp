@@ -50,6 +50,8 @@ struct CalibratedSpecimen {
   std::string name;
   PhotographedErrors photographed;
   std::optional<double> signed_mean_mm;             ///< of the photographed inner edge; absent: an older file
+  /// How far its path lay outside the planned one, mean; absent: it was cut along that.
+  std::optional<double> moved_mean_mm;
   double youngs_modulus_kpa = 70.0;                 ///< reference: the case's, or what the measured force makes of it
   double simulated_force_n = 0.0;                   ///< pull of the simulated specimen at the case's modulus
   double stretch_mm = 0.0;                          ///< how far its end was displaced
