@@ -94,6 +94,7 @@ void add_experiment(Application& application) {
           "and with simulation: what photographs are worth")
       ->delimiter(',')
       ->check(whole_between("--learning", 1, 100));
+  add_overrides(*verb, settings->overrides);
   verb->add_option("--tets", settings->tets, "Tetrahedra of the planner's meshes")
       ->check(whole_between("--tets", 5000, 500000));
   verb->add_option("--rule", *rule, "Of the planner's simulated cuts: cut.rule of its cases")

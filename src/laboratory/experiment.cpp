@@ -63,6 +63,7 @@ ExperimentJson settings_json(const ExperimentSettings& settings) {
           {"known_physics", settings.with_known_physics},
           {"withheld_force", settings.with_withheld_force},
           {"learning", settings.learning},
+          {"overrides", settings.overrides},
           {"tets", settings.tets},
           {"rule", to_string(settings.rule)},
           {"truth", settings.truth.string()}};
@@ -397,7 +398,9 @@ void Experiment::run_trial(Trial& trial) {
   Workers one(1);
   ExperimentSteps steps(root_ / trial.name, one, monitor_);
   VirtualLaboratory bench({trial.seed, trial.given, truth_ / trial.name, settings_.bench, context_.seed}, steps);
-  SpecimenTrial specimen({.name = trial.name, .tets = settings_.tets, .rule = settings_.rule}, steps, bench);
+  SpecimenTrial specimen(
+      {.name = trial.name, .overrides = settings_.overrides, .tets = settings_.tets, .rule = settings_.rule}, steps,
+      bench);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
     const bool goes_on = trial.planned.is_made && trial.role != TrialRole::Calibrate;

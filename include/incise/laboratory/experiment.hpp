@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace incise {
@@ -31,6 +32,7 @@ struct ExperimentSettings {
   /// Test specimens are also cut along the forecasts of only the first so many photographs: each 1 or more, ascending;
   /// those that are not fewer than all are left out. With the rivals alone.
   std::vector<std::size_t> learning;
+  std::vector<std::string> overrides;  ///< checks of every program that are taken on, as of ExportRequest
   int tets = 25000;                  ///< of the planner's meshes
   CutRule rule = CutRule::Tets;      ///< of the planner's simulated cuts
 };
