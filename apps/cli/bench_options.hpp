@@ -24,7 +24,4 @@ void add_overrides(CLI::App& verb, std::vector<std::string>& overrides);
     const std::function<nlohmann::ordered_json(const std::filesystem::path&, const RunContext&, Workers&, Console&)>&
         work);
 
-/// bench accept, bench factors, bench pool.
-void add_bench_series(Application& application, CLI::App& bench);
-
 }  // namespace incise::cli

@@ -124,7 +124,8 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
 
 void add_forecast(Application& application);
 void add_assess(Application& application);
-void add_bench(Application& application);  ///< bench make, bench cut
+void add_bench(Application& application);  ///< bench make, bench cut, bench floor, and those of the next
+void add_bench_series(Application& application, CLI::App& bench);  ///< bench accept, bench factors, bench pool
 void add_calibrate(Application& application);
 void add_demo(Application& application);
 void add_run(Application& application);

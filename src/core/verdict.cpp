@@ -55,8 +55,9 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "Least depth of the simulated kerf anywhere along the path, as a share of the planned depth there."},
     {"heat", kCaution, 0.0, ">=", "mm", "Tissue left unheated between the simulated cut and the tumour's edge."},
     {"simulated_margin", kCaution, kCloseMarginMm, ">", "mm",
-     "Least tissue that the simulated cut alone leaves beside the tumour's edge, where `compensation` expects real cuts "
-     "to err otherwise and then to leave enough."},
+     "Least tissue that the simulated cut alone leaves beside the tumour's edge, where `compensation` expects real "
+     "cuts "
+     "to leave enough."},
     {"painted_skin",
      kCaution,
      {},
@@ -84,7 +85,11 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "The requested correction is not accepted; the path is the uncorrected one, or the rejected one."},
     {"eligibility", kCaution, {}, "", "", "The assessment of this specimen advises against the path."},
     {"registration", kCaution, {}, "", "", "The registration's own figures argue against trusting it."},
-    {"cut_rule", kCaution, {}, "", "",
+    {"cut_rule",
+     kCaution,
+     {},
+     "",
+     "",
      "The cut was simulated by another rule than the usual one (`cut.rule`), with whose cuts nothing was compared."},
     // Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
     {"mesh_resolution", kCaution, 1.5, "<=", "mm", "Mean edge length of the mesh along the path."},

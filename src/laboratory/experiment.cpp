@@ -453,7 +453,8 @@ ExperimentJson Experiment::advice_of(SpecimenTrial& specimen, const std::string&
             words,
             {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), known.calibration, registration},
             {folder / "assessment/assess.json"},
-            [=](const steps::StepContext& context) {
+            [=, &specimen](const steps::StepContext& context) {
+              specimen.begin_run(folder, Stage::Plan);
               const steps::CalibrationInput calibration = steps::read_calibration_input(known);
               return steps::assess_case({read_case_with_inputs(file), folder, {}}, calibration, registration, context);
             }})
@@ -468,7 +469,8 @@ StepAnswer Experiment::forecast_of(SpecimenTrial& specimen, const std::filesyste
                        {"forecast", file.string(), "--calibration", calibration.string(), "-o", folder.string()},
                        {file, specimen.at("tumor.csv"), specimen.at("lab/ct"), calibration},
                        {folder / "forecast/forecast.json"},
-                       [=](const steps::StepContext& context) {
+                       [=, &specimen](const steps::StepContext& context) {
+                         specimen.begin_run(folder, Stage::Plan);
                          return steps::forecast_case({read_case_with_inputs(file), folder, {.until = Stage::Plan}},
                                                      calibration, context);
                        }});

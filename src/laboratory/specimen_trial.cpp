@@ -307,9 +307,9 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
   return result;
 }
 
-void SpecimenTrial::begin_run(const std::filesystem::path& folder) const {
+void SpecimenTrial::begin_run(const std::filesystem::path& folder, Stage until) const {
   const std::filesystem::path corrected = at("compensated");
-  take_products(folder != corrected && std::filesystem::exists(corrected) ? corrected : at("planned"), folder);
+  take_products(folder != corrected && std::filesystem::exists(corrected) ? corrected : at("planned"), folder, until);
 }
 
 SecondCut SpecimenTrial::cut_again(const std::filesystem::path& file, const std::filesystem::path& folder,
@@ -324,7 +324,7 @@ SecondCut SpecimenTrial::cut_again(const std::filesystem::path& file, const std:
                   {file, at("tumor.csv"), at("lab/ct")},
                   {path},
                   [=, this](const steps::StepContext& context) {
-                    begin_run(folder);
+                    begin_run(folder, is_simulated ? Stage::Simulate : Stage::Plan);
                     const CaseFile of = read_case_with_inputs(file);
                     return is_simulated ? steps::compensate_case({of, folder, {}}, std::nullopt, context)
                                         : steps::run_stages({of, folder, {.until = Stage::Compensate}}, context);
@@ -348,7 +348,7 @@ TrialCut SpecimenTrial::cut_robustly(const std::filesystem::path& file, const st
                   {file, at("tumor.csv"), at("lab/ct"), known.calibration},
                   {path},
                   [=, this](const steps::StepContext& context) {
-                    begin_run(folder);
+                    begin_run(folder, Stage::Verify);
                     return steps::compensate_case(
                         {read_case_with_inputs(file), folder, {}},
                         steps::RobustRequest{.calibration = steps::read_calibration_input(known)}, context);

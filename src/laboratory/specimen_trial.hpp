@@ -81,6 +81,8 @@ class SpecimenTrial {
   /// The path of least expected error over all that a calibration leaves possible, and a cut along it.
   [[nodiscard]] TrialCut cut_robustly(const std::filesystem::path& file, const steps::CalibratedRequest& known,
                                       const std::filesystem::path& folder, const std::string& tag);
+  /// Copies what an earlier run of this specimen has cached into `folder`, for a run there of the same stages.
+  void begin_run(const std::filesystem::path& folder, Stage until) const;
   /// Writes another case of the same specimen into its folder. @returns the file.
   [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const CaseVariant& variant) const;
   /// Runs one more step in this specimen's folder, whose refusal is an answer.
@@ -104,8 +106,6 @@ class SpecimenTrial {
   bool read();
   bool find_shape();
   bool find_place();
-  /// What an earlier run of this specimen has kept is there for the next one in another folder.
-  void begin_run(const std::filesystem::path& folder) const;
   void write_edge(const nlohmann::ordered_json& registration) const;
 
   TrialSetup setup_;

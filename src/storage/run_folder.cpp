@@ -103,11 +103,12 @@ void take_verdict_from(const std::filesystem::path& file) {
 
 }  // namespace
 
-void take_products(const std::filesystem::path& from, const std::filesystem::path& to) {
+void take_products(const std::filesystem::path& from, const std::filesystem::path& to, Stage until) {
+  static_assert(kProducts.size() == kStageNames.size());
   EntryFolder there(from / "cache"), here(to / "cache");
-  for (const char* name : kProducts) {
-    if (here.holds(name)) continue;
-    if (const std::optional<std::string> entry = there.load(name)) here.save(name, *entry);
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(until); ++i) {
+    if (here.holds(kProducts[i])) continue;
+    if (const std::optional<std::string> entry = there.load(kProducts[i])) here.save(kProducts[i], *entry);
   }
 }
 

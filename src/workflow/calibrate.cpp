@@ -31,7 +31,7 @@ class CalibrationRunner {
 
   Calibration run() {
     require_one_rule();
-    for (Subject& subject : subjects_) prepare(*subject.of, subject.moved_mm);
+    for (Subject& subject : subjects_) prepare(subject);
     calibration_.method = request_.method;
     calibration_.reference_step_s = subjects_.front().of->settings.cut.reference_step_s;
     calibration_.cut_rule = subjects_.front().of->settings.cut.rule;
@@ -65,7 +65,9 @@ class CalibrationRunner {
     }
   }
 
-  void prepare(const CalibrationSubject& subject, std::vector<double>& moved_mm) {
+  void prepare(Subject& prepared) {
+    const CalibrationSubject& subject = *prepared.of;
+    std::vector<double>& moved_mm = prepared.moved_mm;
     try {
       bodies_.push_back(std::make_unique<CalibrationBody>(subject, workers_, monitor_));
       moved_mm = bodies_.back()->moved_mm();

@@ -54,7 +54,9 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
                     "ring: a calibration compares rings round a tumour");
   }
   ProductSink none;
-  study_ = run_study(subject.settings, *subject.inputs, *subject.cache, {.until = Stage::Plan}, workers, monitor,
+  Case planning = subject.settings;
+  planning.compensation = {};  // of a corrected cut it belongs to the planned path, and the case names its own
+  study_ = run_study(planning, *subject.inputs, *subject.cache, {.until = Stage::Plan}, workers, monitor,
                      subject.sink ? *subject.sink : none);
   require_no_locking(*study_.model);
   require_stretched(*study_.stretched, 1.0);
@@ -99,8 +101,7 @@ double CalibrationBody::reference_stiffness() const {
 
 std::vector<double> CalibrationBody::moved_mm() const {
   if (!given_path_) return {};
-  ProfileSettings profile = profile_of_inner_edge(subject_.settings);
-  profile.target_mm = subject_.settings.plan.lateral_margin_mm;
+  const ProfileSettings profile = profile_of_inner_edge(subject_.settings);
   const std::optional<std::vector<double>> planned = error_profile(entry_contour(*study_.plan), tumor_edge(), profile);
   std::optional<std::vector<double>> moved = error_profile(entry_contour(*given_path_), tumor_edge(), profile);
   if (!planned || !moved)

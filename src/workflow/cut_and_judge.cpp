@@ -2,7 +2,6 @@
 
 #include <incise/cutting/path_heat.hpp>
 #include <incise/workflow/cut_verdict.hpp>
-#include <incise/workflow/expected_errors.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <algorithm>
@@ -119,7 +118,7 @@ ContourErrors layer_line_errors(const Case& settings, const KerfLayer& layer, co
 }
 
 SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed, const ToolPath& intended,
-                   std::size_t tets, const SimulatedCut* first) {
+                   std::size_t tets) {
   SimulatedCut cut;
   cut.incision = std::move(incision);
   cut.tets = tets;
@@ -142,8 +141,7 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
     if (cut.line_to_edge_mm) cut.thermal_margin_mm = *cut.line_to_edge_mm - cut.thermal_half_width_mm;
   }
   cut.outcome = cut.incision.outcome == Outcome::Success ? cut.centerline.outcome : cut.incision.outcome;
-  cut.verdict =
-      verdict_of_cut(settings, cut, expected_errors(settings, first != nullptr ? *first : cut, intended.tumor_edge));
+  cut.verdict = verdict_of_cut(settings, cut);
   return cut;
 }
 

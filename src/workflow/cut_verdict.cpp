@@ -1,7 +1,6 @@
 #include "workflow/layer_line.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/evaluation/error_profile.hpp>
 #include <incise/geometry/contour_checks.hpp>
 #include <incise/workflow/cut_verdict.hpp>
 
@@ -71,15 +70,6 @@ struct Tissue {
   std::optional<VerdictPlace> at;
 };
 
-/// What is expected of a line beyond the simulation, at each of its points. @param edge  that the line is measured
-/// from.
-std::vector<double> expected_at(const Case& settings, const ExpectedErrors& expected, const Points& places,
-                                const Contour& edge) {
-  if (!expected.is_any()) return std::vector<double>(places.size(), 0.0);
-  return values_at(expected.beyond_mm, places, edge,
-                   {.approach = settings.plan.approach, .start_direction = settings.plan.start_direction});
-}
-
 /// @param off_mm  from the line to where tissue ends.
 void note_line(const Points& places, const std::vector<double>& distance_mm, const std::vector<double>& beyond_mm,
                double off_mm, const std::string& name, Tissue& least) {
@@ -92,7 +82,7 @@ void note_line(const Points& places, const std::vector<double>& distance_mm, con
 void note_evaluation(const Case& settings, const ExpectedErrors& expected, const Evaluation& line, const Contour& edge,
                      double off_mm, const std::string& name, Tissue& least) {
   const Points& places = line.errors.points.points;
-  note_line(places, line.errors.signed_distance_mm, expected_at(settings, expected, places, edge), off_mm, name, least);
+  note_line(places, line.errors.signed_distance_mm, expected.at(settings, places, edge), off_mm, name, least);
 }
 
 void note_layers(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected, Tissue& least) {
@@ -102,7 +92,7 @@ void note_layers(const Case& settings, const SimulatedCut& cut, const ExpectedEr
     double error_mm = cut.layers[i].signed_error_mm->min;
     if (expected.is_any()) {
       const ContourErrors line = layer_line_errors(settings, layer, expected.tumor_edge);
-      const std::vector<double> beyond = expected_at(settings, expected, line.points.points, expected.tumor_edge);
+      const std::vector<double> beyond = expected.at(settings, line.points.points, expected.tumor_edge);
       error_mm = std::numeric_limits<double>::infinity();
       for (std::size_t k = 0; k < beyond.size(); ++k)
         error_mm = std::min(error_mm, line.signed_error_mm[k] + beyond[k]);
@@ -145,28 +135,46 @@ std::string tissue_in_words(double left_mm, double limit_mm) {
   return fmt::format("leaves {:.{}f} mm of tissue beside the tumour's edge", left_mm, digits);
 }
 
+/// "inner edge, the tool out, with the errors …, leaves 2.13 mm …": what is expected of a line.
+std::string expected_in_words(const Tissue& least, double limit_mm) {
+  return fmt::format("{}{} with the errors that compensation expects of real cuts, {}", least.of,
+                     least.of.ends_with(',') ? "" : ",", tissue_in_words(least.left_mm, limit_mm));
+}
+
+/// Refused where the cut is expected too near the tumour, or is simulated to enter it. What was learned of other cuts
+/// may argue against the simulation, but not by all of the margin.
 void judge_margin(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected, Verdict& verdict) {
   const double limit_mm = settings.close_margin_mm;
-  const Tissue least = least_tissue(settings, cut, expected);
-  const char* comma = least.of.ends_with(',') ? "" : ",";
-  const std::string how =
-      expected.is_any() ? fmt::format("{} with the errors that compensation expects of real cuts,", comma) : "";
-  if (!std::isfinite(least.left_mm)) return;  // nothing was measured: the outcome says so
-  if (least.left_mm <= limit_mm) {
-    verdict.add(
-        "lateral_margin", least.left_mm,
-        fmt::format("the simulated cut's {}{} {}; more than {} mm of tissue is required{}", least.of, how,
-                    tissue_in_words(least.left_mm, limit_mm), limit_mm, margin_that_would_do(settings, least.left_mm)),
-        least.at, limit_mm);
-    return;
+  const Tissue simulated = least_tissue(settings, cut, {});
+  if (!std::isfinite(simulated.left_mm)) return;  // nothing was measured: the outcome says so
+  const std::string as_simulated = fmt::format("{} {}", simulated.of, tissue_in_words(simulated.left_mm, limit_mm));
+  const auto refuse = [&](const Tissue& least, const std::string& words) {
+    verdict.add("lateral_margin", least.left_mm,
+                fmt::format("the simulated cut's {}; more than {} mm of tissue is required{}", words, limit_mm,
+                            margin_that_would_do(settings, least.left_mm)),
+                least.at, limit_mm);
+  };
+  if (expected.is_any()) {
+    const Tissue least = least_tissue(settings, cut, expected);
+    const std::string as_expected = expected_in_words(least, limit_mm);
+    if (least.left_mm <= limit_mm) return refuse(least, as_expected);
+    if (simulated.left_mm > 0.0 && simulated.left_mm <= limit_mm) {
+      verdict.add("simulated_margin", simulated.left_mm,
+                  fmt::format("the simulated cut's {}; its {}. More than {} mm is required", as_simulated, as_expected,
+                              limit_mm),
+                  simulated.at, limit_mm);
+      return;
+    }
   }
-  const Tissue simulated = expected.is_any() ? least_tissue(settings, cut, {}) : least;
-  if (simulated.left_mm > limit_mm) return;
-  verdict.add("simulated_margin", simulated.left_mm,
-              fmt::format("the simulated cut's {} {}, and {:.2f} mm only with the errors that compensation expects of "
-                          "real cuts; more than {} mm is required",
-                          simulated.of, tissue_in_words(simulated.left_mm, limit_mm), least.left_mm, limit_mm),
-              simulated.at, limit_mm);
+  if (simulated.left_mm <= limit_mm) refuse(simulated, as_simulated);
+}
+
+/// An expectation that cannot be laid round the tumour is said.
+void judge_expectation(const ExpectedErrors& expected, Verdict& verdict) {
+  if (expected.is_measured) return;
+  verdict.add("simulated_margin", {},
+              "the errors that compensation expects of real cuts are known only in part: they need the simulated "
+              "errors of the first cut, and it left no ring round the middle of the tumour's edge");
 }
 
 void judge_tumor(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
@@ -281,6 +289,7 @@ Verdict verdict_of_cut(const Case& settings, const SimulatedCut& cut, const Expe
   judge_outcome(cut, verdict);
   judge_tumor(settings, cut, verdict);
   judge_margin(settings, cut, expected, verdict);
+  judge_expectation(expected, verdict);
   judge_layers(cut, verdict);
   judge_depth(settings, cut, verdict);
   judge_heat(cut, verdict);

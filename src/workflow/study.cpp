@@ -8,6 +8,7 @@
 #include <incise/workflow/correction.hpp>
 #include <incise/workflow/cut_doubts.hpp>
 #include <incise/workflow/cut_verdict.hpp>
+#include <incise/workflow/expected_errors.hpp>
 #include <incise/workflow/study.hpp>
 
 #include <fmt/format.h>
@@ -404,8 +405,9 @@ class Runner {
 
   /// A cut with what is held against it.
   SimulatedCut judged(IncisionResult incision, const ToolPath& path) const {
-    SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size(),
-                             study_.as_planned ? &*study_.as_planned : nullptr);
+    SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size());
+    const SimulatedCut& along_plan = study_.as_planned ? *study_.as_planned : cut;
+    cut.verdict = verdict_of_cut(settings_, cut, expected_errors(settings_, along_plan, study_.plan->tumor_edge));
     cut.verdict.add(verdict_before_cut(settings_, *study_.model, made_skin_, study_.stretched->state.positions, path));
     return cut;
   }

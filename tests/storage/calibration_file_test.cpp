@@ -127,7 +127,8 @@ TEST_F(CalibrationFileTest, KeepsWhatWasMeasuredOfItsSpecimens) {
   calibration.specimens[0].stretch_force_n = 4.2;
   calibration.specimens[0].registration = RegistrationQuality{0.31, 1.02};
   calibration.specimens[0].signed_mean_mm = -1.61;
-  calibration.specimens[1].signed_mean_mm = -1.83;
+  calibration.specimens[1].signed_mean_mm = -0.53;  // of a corrected cut …
+  calibration.specimens[1].moved_mean_mm = 1.3;     // … whose path lay farther out by so much
   write_json(path(), to_json(calibration));
   Calibration found = read_calibration(path());
   EXPECT_EQ(found.specimens[0].youngs_modulus_kpa, 12.5);

@@ -167,13 +167,30 @@ TEST_F(RunFolderTest, KeepsItsCacheInTheFolderSoThatItMayBeMoved) {
 TEST_F(RunFolderTest, ARunTakesTheProductsThatAnotherHasKeptAndLeavesItsOwn) {
   const std::string theirs = std::string(kCacheMagic) + "theirs", own = std::string(kCacheMagic) + "own";
   EntryFolder from(folder_ / "a/cache"), to(folder_ / "b/cache");
-  for (const char* name : {"mesh", "plan", "verdicts"}) from.save(name, theirs);
+  for (const char* name : {"mesh", "plan", "as_planned", "verdicts"}) from.save(name, theirs);
   to.save("plan", own);
-  take_products(folder_ / "a", folder_ / "b");
+  take_products(folder_ / "a", folder_ / "b", Stage::Plan);
   EXPECT_EQ(to.load("mesh"), theirs);
   EXPECT_EQ(to.load("plan"), own);
+  EXPECT_FALSE(to.holds("as_planned")) << "beyond the last stage that was asked for";
+  take_products(folder_ / "a", folder_ / "b", Stage::Verify);
+  EXPECT_EQ(to.load("as_planned"), theirs);
   EXPECT_FALSE(to.holds("verdicts")) << "what was judged there";
-  EXPECT_NO_THROW(take_products(folder_ / "none", folder_ / "b"));
+  EXPECT_NO_THROW(take_products(folder_ / "none", folder_ / "b", Stage::Verify));
+}
+
+TEST_F(RunFolderTest, ARunThatTookTheProductsOfAnotherComputesNoneOfThem) {
+  Workers workers(1);
+  const auto run_in = [&](const char* name) {
+    RunFolder run(read("plan: {lateral_margin_mm: 1.5, depth_mm: 1}\n"), folder_ / name, {"incise test", 7, 2});
+    return run_study(run.case_file().settings, run, run.cache(), {.until = Stage::Plan}, workers, silent_, run);
+  };
+  const Study first = run_in("a");
+  take_products(folder_ / "a", folder_ / "b", Stage::Plan);
+  const Study second = run_in("b");
+  for (const StageReport& stage : second.stages) EXPECT_NE(stage.state, StageState::Computed) << to_string(stage.stage);
+  EXPECT_EQ(bytes_of(*second.plan), bytes_of(*first.plan));
+  EXPECT_EQ(bytes_of(second.stretched->state), bytes_of(first.stretched->state));
 }
 
 TEST_F(RunFolderTest, AScanIsKnownByItsContentAndHowItIsRead) {

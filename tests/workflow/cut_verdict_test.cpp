@@ -11,12 +11,9 @@
 namespace incise {
 namespace {
 
-using ::testing::DoubleNear;
-using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 std::vector<std::string> ids_of(const Verdict& verdict) {
   std::vector<std::string> ids;
@@ -194,7 +191,10 @@ TEST(VerdictOfCut, CautionsWhereTheSimulationAloneLeavesTooLittle) {
   EXPECT_EQ(verdict.status(), VerdictStatus::Caution);
   EXPECT_NEAR(*verdict.reasons()[0].value, 1.8, 0.02);
   EXPECT_THAT(verdict.reasons()[0].message, HasSubstr("leaves 1.80 mm"));
-  EXPECT_THAT(verdict.reasons()[0].message, HasSubstr("and 2.40 mm only with"));
+  EXPECT_THAT(
+      verdict.reasons()[0].message,
+      HasSubstr(
+          "its inner edge, the tool out, with the errors that compensation expects of real cuts, leaves 2.40 mm"));
   EXPECT_THAT(ids_of(verdict_of_cut(settings, cut)), ElementsAre("lateral_margin")) << "nothing is expected beyond it";
 }
 
@@ -209,35 +209,65 @@ TEST(VerdictOfCut, ExpectsLayersToErrAsTheRestDoes) {
   const Case settings = expecting({0.5});
   EXPECT_THAT(ids_of(verdict_of_cut(settings, cut, expected_errors(settings, cut, circle(10.0)))),
               ElementsAre("simulated_margin"));
-  const Case inwards = expecting({0.0, 0.0, 0.5, 0.0});
-  EXPECT_THAT(ids_of(verdict_of_cut(inwards, cut, expected_errors(inwards, cut, circle(10.0)))),
+  const Case on_one_side = expecting({0.0, 0.0, 0.5, 0.0});
+  EXPECT_THAT(ids_of(verdict_of_cut(on_one_side, cut, expected_errors(on_one_side, cut, circle(10.0)))),
               ElementsAre("lateral_margin"));
 }
 
+TEST(VerdictOfCut, RefusesACutThatIsSimulatedToEnterTheEdgeWhateverIsExpected) {
+  SimulatedCut cut = sound_cut();
+  cut.inner_edge.errors = contour_errors(circle(9.9), circle(10.0), 4.5, -Vec3::UnitZ());
+  const Case settings = expecting({5.0});
+  const Verdict verdict = verdict_of_cut(settings, cut, expected_errors(settings, cut, circle(10.0)));
+  ASSERT_THAT(ids_of(verdict), ElementsAre("lateral_margin"));
+  EXPECT_NEAR(*verdict.reasons()[0].value, -0.1, 0.01);
+}
+
+/// Signed errors of both lines, mm: mid-line -1.0, inner edge -0.4.
+SimulatedCut measured_cut() {
+  SimulatedCut cut = sound_cut();
+  cut.incision.centerline = circle(14.0);
+  cut.centerline.errors = contour_errors(circle(14.0), circle(10.0), 5.0, -Vec3::UnitZ());
+  cut.centerline.abs_error_mm = Summary{.mean = 1.0};
+  cut.incision.inner_edge = circle(14.1);
+  cut.incision.kerf.inner_edge_reference = circle(14.1);
+  cut.inner_edge.abs_error_mm = Summary{.mean = 0.4};
+  return cut;
+}
+
 TEST(ExpectedErrors, AreBiasResidualAndWhatTheShareLeavesOfTheFirstCut) {
-  SimulatedCut first = sound_cut();
-  first.incision.centerline = circle(14.0);
-  first.centerline.errors = contour_errors(circle(14.0), circle(10.0), 5.0, -Vec3::UnitZ());
-  first.centerline.abs_error_mm = Summary{.mean = 1.0};
+  SimulatedCut first = measured_cut();
+  const Points start{Vec3(0.0, -14.0, 0.0)};  // the start direction
+  const auto at_start = [&](const Case& settings) {
+    return expected_errors(settings, first, circle(10.0)).at(settings, start, circle(10.0)).front();
+  };
   Case settings;
   EXPECT_FALSE(expected_errors(settings, first, circle(10.0)).is_any());
   settings.compensation.bias_mm = 0.2;
+  EXPECT_NEAR(at_start(settings), 0.2, 1e-12);
   settings.compensation.residual_mm = {0.1, 0.2, 0.3, 0.4};
-  EXPECT_THAT(
-      expected_errors(settings, first, circle(10.0)).beyond_mm,
-      ElementsAre(DoubleNear(0.3, 1e-12), DoubleNear(0.4, 1e-12), DoubleNear(0.5, 1e-12), DoubleNear(0.6, 1e-12)));
+  EXPECT_NEAR(at_start(settings), 0.3, 1e-9);
   settings.compensation.simulated_share = 0.5;  // half of -1.0 + 0.2 mm is taken back
-  EXPECT_THAT(expected_errors(settings, first, circle(10.0)).beyond_mm,
-              ElementsAre(DoubleNear(0.7, 0.01), DoubleNear(0.8, 0.01), DoubleNear(0.9, 0.01), DoubleNear(1.0, 0.01)));
-  Case by_photographs;
-  by_photographs.compensation.method = CompensationMethod::Profile;
-  by_photographs.compensation.photographed_mm = {-0.4};
-  const ExpectedErrors expected = expected_errors(by_photographs, first, circle(10.0));
-  EXPECT_THAT(expected.beyond_mm, SizeIs(36));
-  EXPECT_THAT(expected.beyond_mm, Each(DoubleNear(0.6, 0.01))) << "-0.4 where -1.0 mm is simulated";
+  EXPECT_NEAR(at_start(settings), 0.7, 0.01);
+  settings.compensation.residual_mm.assign(360, 0.1);
+  EXPECT_NEAR(at_start(settings), 0.7, 0.01) << "more sectors than the ring has points";
   first.incision.is_closed_loop = false;
   first.incision.kerf.layers.clear();
-  EXPECT_FALSE(expected_errors(settings, first, circle(10.0)).is_any()) << "no ring to take a share of";
+  const ExpectedErrors unmeasured = expected_errors(settings, first, circle(10.0));
+  EXPECT_FALSE(unmeasured.is_measured) << "no ring to take a share of";
+  EXPECT_THAT(ids_of(verdict_of_cut(settings, sound_cut(), unmeasured)), ElementsAre("simulated_margin"));
+}
+
+TEST(ExpectedErrors, PutTheInnerEdgeWhereItWasPhotographed) {
+  const SimulatedCut first = measured_cut();
+  Case settings;
+  settings.compensation.method = CompensationMethod::Profile;
+  settings.compensation.photographed_mm = {-0.1};
+  const ExpectedErrors expected = expected_errors(settings, first, circle(10.0));
+  const Points& places = first.inner_edge.errors.points.points;
+  const std::vector<double> beyond = expected.at(settings, places, circle(10.0));
+  for (std::size_t i = 0; i < places.size(); ++i)
+    EXPECT_NEAR(first.inner_edge.errors.signed_error_mm[i] + beyond[i], -0.1, 0.01);
 }
 
 TEST(VerdictOfCut, CautionsOfHeatThatReachesEdgeOrSurface) {

@@ -116,11 +116,12 @@ class RunFolder : public Inputs, public ProductSink {
   std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
 };
 
-/// Copies what the cache of one run keeps of its products into that of another, as far as the other has none of that
-/// name: their keys tell which of them fit its case, so that runs of one specimen make their common stages once. A run
-/// that keeps nothing: nothing.
-/// @param from, to  roots of runs.  @throws DataError as EntryFolder.
-void take_products(const std::filesystem::path& from, const std::filesystem::path& to);
+/// Copies products that the cache of one run holds into that of another which has none of that name. Their keys tell
+/// which of them fit its case, so that runs of one specimen make their common stages once. If `from` has no cache,
+/// nothing is copied.
+/// @param from, to  roots of runs.  @param until  the last stage whose product is copied.
+/// @throws DataError as EntryFolder.
+void take_products(const std::filesystem::path& from, const std::filesystem::path& to, Stage until);
 
 /// In the folder of a cut that has divided tets: all of them before the cut, with the cell data `skin_faces` (bit f is
 /// set where face f is on the skin) and `gone_step`. The frames name them by the cell data `cell`.

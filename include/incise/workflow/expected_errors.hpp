@@ -8,21 +8,23 @@
 
 namespace incise {
 
-/// What real cuts of a case are expected to err beyond simulated ones, by direction.
+/// What real cuts of a case are expected to err beyond simulated ones, mm, by sector of equal angle about the middle of
+/// the tumour edge, the first about the start direction (see values_at). The lists are added.
 struct ExpectedErrors {
-  /// Real less simulated signed error, mm, by sector of equal angle about the tumour edge's middle, the first about the
-  /// start direction (see values_at); empty: a real cut is expected to lie where the simulated one does.
-  std::vector<double> beyond_mm;
-  Contour tumor_edge;  ///< about whose middle the sectors lie in the stretched tissue before the cut
-  [[nodiscard]] bool is_any() const { return !beyond_mm.empty(); }
+  std::vector<double> listed_mm;     ///< what the case lists, and its bias; empty: nothing
+  std::vector<double> simulated_mm;  ///< what its share leaves of simulated errors or adds to them; empty: nothing
+  bool is_measured = true;           ///< false: that share is needed, and the first cut left no ring to measure
+  Contour tumor_edge;                ///< of the intended path, in the stretched tissue before the cut
+  [[nodiscard]] bool is_any() const { return !listed_mm.empty() || !simulated_mm.empty(); }
+  /// At places in the view. @param edge  the tumour edge about whose middle they lie. O(places).
+  [[nodiscard]] std::vector<double> at(const Case& settings, const Points& places, const Contour& edge) const;
 };
 
 /// What the case's compensation expects: with the default method, its bias, its residual, and what its share leaves of
-/// the simulated errors of the cut along the intended path or adds to them; with method profile, what was photographed
-/// less what is simulated; with the paper's, nothing. A path and its cut move together, so that the same is expected
-/// of every path of the case.
-/// @param first       the cut along the intended path. Where no share is needed it is not read; where it is and no ring
-///                    was left to measure, nothing is expected.
+/// the simulated errors of the cut along the intended path or adds to them; with method profile, what photographs of
+/// inner edges showed in place of what is simulated; with the paper's, nothing. A path and its cut move together, so
+/// that the same is expected of every path of the case.
+/// @param first       the cut along the intended path; read where a share of its errors is needed.
 /// @param tumor_edge  of the intended path, closed, mm. O(points of the cut).
 /// Source: docs/models/compensation.md, "The default method".
 [[nodiscard]] ExpectedErrors expected_errors(const Case& settings, const SimulatedCut& first,

@@ -120,9 +120,9 @@ struct RunOptions {
 /// The single stages, for those who have the inputs in memory.
 /// Evaluates a simulated incision: mid-line and, for a ring, inner edge; and heat along the path.
 /// @param followed  by the tool: its speeds and depths count for heat.  @param tets  of the mesh before the cut.
-/// @param first  the cut along the intended path, see expected_errors; null: this one.
+/// Its verdict expects nothing beyond the simulation, see verdict_of_cut.
 [[nodiscard]] SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed,
-                                 const ToolPath& intended, std::size_t tets, const SimulatedCut* first = nullptr);
+                                 const ToolPath& intended, std::size_t tets);
 [[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
                                                   const std::optional<Contour>& tumor_edge,
                                                   const std::optional<Contour>& line, Workers& workers,
