@@ -14,6 +14,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -355,6 +356,26 @@ TEST(RunStudy, ByAProfileMovesThePathWithoutAnySimulatedCutUntilItIsVerified) {
   const Study verified = run_study(settings, block, block.cache, {}, workers, silent);
   ASSERT_TRUE(verified.as_planned && verified.corrected);
   EXPECT_EQ(verified.correction->moves.move_mm, moved.correction->moves.move_mm) << "the same product";
+}
+
+TEST(RunStudy, JudgesEveryCutByWhatIsExpectedAlongThePlannedPath) {
+  Block block;
+  Workers workers(2);
+  Monitor silent;
+  Case settings = coarse_case();
+  settings.compensation.method = CompensationMethod::Profile;
+  settings.compensation.photographed_mm = {-0.8};
+  settings.close_margin_mm = 4.9;  // so that every cut is too near, and the verdict says how near
+  const Study study = run_study(settings, block, block.cache, {}, workers, silent);
+  ASSERT_TRUE(study.as_planned && study.corrected);
+  const auto left_mm = [](const SimulatedCut& cut) {
+    for (const VerdictReason& reason : cut.verdict.reasons())
+      if (reason.id == "lateral_margin") return *reason.value;
+    return std::numeric_limits<double>::quiet_NaN();
+  };
+  EXPECT_NEAR(left_mm(*study.as_planned), 5.0 - 0.8 - 0.8, 0.7) << "margin, radius, as photographed; tets of 2 mm";
+  EXPECT_GT(left_mm(*study.corrected), left_mm(*study.as_planned) + 0.4)
+      << "the path moved out by 0.8 mm, and its cut with it";
 }
 
 TEST(Correct, AddsTheProfileToTheBiasWaypointByWaypoint) {
