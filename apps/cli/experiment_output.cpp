@@ -134,7 +134,7 @@ void print_pooled(const nlohmann::ordered_json& result) {
                robust.at("close_margins_second").get<std::size_t>());
   }
   print_learning(result.at("learning"));
-  if (result.at("advice").is_object())
+  if (const auto& advice = result.at("advice"); advice.is_object() && advice.at("intervals_by") == "specimens")
     fmt::print("advice; its intervals treat specimens as independent, which those of a series are not\n");
   print_advice(result.at("advice"));
 }

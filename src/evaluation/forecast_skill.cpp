@@ -7,9 +7,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace incise {
 namespace {
+
+constexpr std::size_t kLeastReplicates = 99;
+/// Of clusters of which few hold both kinds, this many draws are made for each replicate at most.
+constexpr int kMostDrawsPerReplicate = 20;
 
 /// Share of the pairs in which the event's score is the higher one, equal ones counted as halves. Both sorted.
 double area_of(const std::vector<double>& happened, const std::vector<double>& did_not) {
@@ -51,9 +56,56 @@ std::vector<RocPoint> points_of(const std::vector<double>& happened, const std::
   return points;
 }
 
-Interval wilson_interval(std::size_t happened, std::size_t n) {
-  const auto count = static_cast<double>(n);
-  const double share = static_cast<double>(happened) / count, z2 = kNormal95 * kNormal95;
+/// Scores of what happened and of what did not.
+struct Scores {
+  std::vector<double> happened, did_not;
+  void add(const Forecast& forecast) { (forecast.happened ? happened : did_not).push_back(forecast.said); }
+  [[nodiscard]] double area() {
+    std::sort(happened.begin(), happened.end());
+    std::sort(did_not.begin(), did_not.end());
+    return area_of(happened, did_not);
+  }
+};
+
+std::vector<std::vector<Forecast>> by_cluster(std::span<const Forecast> forecasts) {
+  std::map<std::size_t, std::vector<Forecast>> clusters;
+  for (const Forecast& forecast : forecasts) clusters[forecast.cluster].push_back(forecast);
+  std::vector<std::vector<Forecast>> list;
+  for (auto& [number, members] : clusters) list.push_back(std::move(members));
+  return list;
+}
+
+/// Areas of replicates that draw whole clusters anew. One with a single kind has no area and is drawn again.
+std::vector<double> areas_by_cluster(const std::vector<std::vector<Forecast>>& clusters,
+                                     const BootstrapSettings& settings) {
+  Random random(settings.seed);
+  std::vector<double> areas;
+  for (int left = kMostDrawsPerReplicate * settings.replicates;
+       left > 0 && areas.size() < static_cast<std::size_t>(settings.replicates); --left) {
+    Scores drawn;
+    for (std::size_t i = 0; i < clusters.size(); ++i)
+      for (const Forecast& forecast : clusters[random.below(clusters.size())]) drawn.add(forecast);
+    if (!drawn.happened.empty() && !drawn.did_not.empty()) areas.push_back(drawn.area());
+  }
+  return areas;
+}
+
+/// How many times the variance of a share is what it would be were its forecasts independent; at least 1.
+double design_effect(const std::vector<std::vector<Forecast>>& clusters, double share, double count) {
+  if (clusters.size() < 2 || share == 0.0 || share == 1.0) return 1.0;
+  double squares = 0.0;
+  for (const std::vector<Forecast>& members : clusters) {
+    const auto happened =
+        static_cast<double>(std::ranges::count_if(members, [](const Forecast& one) { return one.happened; }));
+    squares += std::pow(happened - share * static_cast<double>(members.size()), 2);
+  }
+  const auto number = static_cast<double>(clusters.size());
+  return std::max(1.0, squares * number / (number - 1.0) / (count * share * (1.0 - share)));
+}
+
+/// @param count  of forecasts; of as many as they are worth where they are in clusters.
+Interval wilson_interval(double share, double count) {
+  const double z2 = kNormal95 * kNormal95;
   const double middle = (share + z2 / (2.0 * count)) / (1.0 + z2 / count);
   const double half =
       kNormal95 / (1.0 + z2 / count) * std::sqrt(share * (1.0 - share) / count + z2 / (4.0 * count * count));
@@ -81,13 +133,19 @@ RocCurve roc_curve(std::span<const Forecast> forecasts, const BootstrapSettings&
   curve.did_not = did_not.size();
   curve.area = area_of(happened, did_not);
   curve.points = points_of(happened, did_not);
-  Random random(settings.seed);
-  std::vector<double> areas(static_cast<std::size_t>(settings.replicates));
-  for (double& area : areas) {
-    const std::vector<double> first = drawn_anew(happened, random);  // in this order on every compiler
-    area = area_of(first, drawn_anew(did_not, random));
+  const std::vector<std::vector<Forecast>> clusters = by_cluster(forecasts);
+  std::vector<double> areas;
+  if (clusters.size() > 1) {
+    areas = areas_by_cluster(clusters, settings);
+  } else {
+    Random random(settings.seed);
+    for (int i = 0; i < settings.replicates; ++i) {
+      const std::vector<double> first = drawn_anew(happened, random);  // in this order on every compiler
+      areas.push_back(area_of(first, drawn_anew(did_not, random)));
+    }
   }
-  curve.confidence = percentiles(std::move(areas), settings.level);
+  const bool is_enough = areas.size() >= kLeastReplicates;
+  curve.confidence = !is_enough ? Interval{0.0, 1.0} : percentiles(std::move(areas), settings.level);
   return curve;
 }
 
@@ -101,23 +159,28 @@ Reliability reliability(std::span<const Forecast> forecasts, std::size_t bins) {
   INCISE_REQUIRE(!forecasts.empty() && bins >= 1,
                  fmt::format("expected forecasts and at least one bin, found {} and {}", forecasts.size(), bins));
   std::vector<ReliabilityBin> all(bins);
+  std::vector<std::vector<Forecast>> in_bin(bins);
   Reliability result;
   for (std::size_t i = 0; i < forecasts.size(); ++i) {
     const Forecast& forecast = forecasts[i];
     INCISE_REQUIRE(forecast.said >= 0.0 && forecast.said <= 1.0,
                    fmt::format("forecast {}: expected a probability in [0, 1], found {}", i, forecast.said));
-    ReliabilityBin& bin = all[std::min(bins - 1, static_cast<std::size_t>(forecast.said * static_cast<double>(bins)))];
+    const std::size_t place = std::min(bins - 1, static_cast<std::size_t>(forecast.said * static_cast<double>(bins)));
+    ReliabilityBin& bin = all[place];
+    in_bin[place].push_back(forecast);
     ++bin.forecasts;
     bin.happened += forecast.happened ? 1 : 0;
     bin.mean_said += forecast.said;
     result.brier_score += std::pow(forecast.said - (forecast.happened ? 1.0 : 0.0), 2);
   }
   result.brier_score /= static_cast<double>(forecasts.size());
-  for (ReliabilityBin& bin : all) {
+  for (std::size_t place = 0; place < bins; ++place) {
+    ReliabilityBin& bin = all[place];
     if (bin.forecasts == 0) continue;
-    bin.mean_said /= static_cast<double>(bin.forecasts);
-    bin.share = static_cast<double>(bin.happened) / static_cast<double>(bin.forecasts);
-    bin.confidence = wilson_interval(bin.happened, bin.forecasts);
+    const auto count = static_cast<double>(bin.forecasts);
+    bin.mean_said /= count;
+    bin.share = static_cast<double>(bin.happened) / count;
+    bin.confidence = wilson_interval(bin.share, count / design_effect(by_cluster(in_bin[place]), bin.share, count));
     result.bins.push_back(bin);
   }
   return result;

@@ -57,7 +57,8 @@ std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& sp
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
     if (is_outside_alone && specimen.role != TrialRole::Outside) continue;
-    if (const std::optional<bool> worse = specimen.is_worse()) forecasts.push_back({stated(specimen.*key), *worse});
+    if (const std::optional<bool> worse = specimen.is_worse())
+      forecasts.push_back({stated(specimen.*key), *worse, specimen.series});
   }
   return forecasts;
 }
@@ -66,7 +67,7 @@ std::vector<Forecast> forecasts_without_pull(const std::vector<AdvisedSpecimen>&
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
     if (const std::optional<bool> worse = specimen.is_worse_without_pull())
-      forecasts.push_back({stated(specimen.p_worse_without_pull), *worse});
+      forecasts.push_back({stated(specimen.p_worse_without_pull), *worse, specimen.series});
   }
   return forecasts;
 }
@@ -92,7 +93,7 @@ AdviceJson close_margin_json(const std::vector<AdvisedSpecimen>& specimens) {
   for (const AdvisedSpecimen& specimen : specimens) {
     for (const AdvisedCut* cut : {&specimen.planned, &specimen.corrected}) {
       if (cut->p_close_margin && cut->least_margin_mm)
-        forecasts.push_back({*cut->p_close_margin, *cut->least_margin_mm < limit_mm});
+        forecasts.push_back({*cut->p_close_margin, *cut->least_margin_mm < limit_mm, specimen.series});
     }
   }
   if (forecasts.empty()) return nullptr;
@@ -160,7 +161,8 @@ AdviceJson intervals_json(const std::vector<AdvisedSpecimen>& specimens) {
     for (const AdvisedSpecimen& specimen : specimens) {
       const Foretold found = one.in(specimen);
       if (!found.interval || !found.shown) continue;
-      held.push_back({one.level, *found.shown >= found.interval->low && *found.shown <= found.interval->high});
+      const bool is_held = *found.shown >= found.interval->low && *found.shown <= found.interval->high;
+      held.push_back({one.level, is_held, specimen.series});
     }
     if (held.empty()) continue;
     const ReliabilityBin all = reliability(held, 1).bins.front();

@@ -37,6 +37,7 @@ struct AdvisedSpecimen {
   std::string advice;
   std::optional<double> expected_gain_mm;
   std::optional<Interval> gain_80, gain_95;
+  std::size_t series = 0;  ///< that it was cut in, of several; not in its description
   std::optional<double> p_worse, p_worse_if_alike, p_worse_if_unlike, p_unlike;
   AdvisedCut planned, corrected;
   std::optional<double> p_worse_without_pull;  ///< the same, had the pull not been measured

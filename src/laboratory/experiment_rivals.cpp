@@ -14,7 +14,6 @@ namespace incise::laboratory {
 namespace {
 
 constexpr double kHarmMm = 0.1;
-constexpr std::ptrdiff_t kFewestSeries = 5;  // below it the ends of an interval would be those of single series
 
 /// A specimen's photographed mean |error| along a path; nothing: no closed ring, or not asked for.
 std::optional<double> error_along(const TestedSpecimen& specimen, std::string_view name) {

@@ -41,6 +41,9 @@ struct PathComparison {
   std::optional<std::string> best_without_simulation;
   [[nodiscard]] const PathResult* find(std::string_view name) const;
 };
+/// Below so many series the ends of an interval that draws them anew would be those of single ones.
+inline constexpr std::ptrdiff_t kFewestSeries = 5;
+
 /// The tested specimens of one series: they share a calibration and, on the second bench, a hand-eye offset.
 using TestedSeries = std::vector<TestedSpecimen>;
 

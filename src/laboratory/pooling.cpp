@@ -251,11 +251,15 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   require_same_paths(all);
   std::vector<TestedSeries> tested, unlike, like;
   std::vector<AdvisedSpecimen> advised;
+  const bool is_by_series = static_cast<std::ptrdiff_t>(all.size()) >= laboratory::kFewestSeries;
   for (const PooledSeries& series : all) {
     tested.push_back(series.tested);
     unlike.push_back(laboratory::of_likeness(series.tested, true));
     like.push_back(laboratory::of_likeness(series.tested, false));
-    advised.insert(advised.end(), series.advised.begin(), series.advised.end());
+    for (AdvisedSpecimen specimen : series.advised) {
+      if (is_by_series) specimen.series = tested.size();
+      advised.push_back(std::move(specimen));
+    }
     if (series.tested.empty())
       monitor.message(Severity::Warning,
                       fmt::format("{}: no test specimen was measured as planned", series.folder.string()));
@@ -276,7 +280,8 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   const std::vector<laboratory::LearningPoint> curve = laboratory::learning_curve(tested);
   result["learning"] = PoolJson::array();
   for (const laboratory::LearningPoint& point : curve) result["learning"].push_back(to_json(point));
-  const PoolJson advice = laboratory::advice_scores(advised);
+  PoolJson advice = laboratory::advice_scores(advised);
+  if (advice.is_object()) advice["intervals_by"] = is_by_series ? "series" : "specimens";
   result["advice"] = advice;
   AtomicFolder folder(output);
   write_json(folder.path() / "pooled.json", result);

@@ -53,6 +53,30 @@ TEST(RocCurve, ItsIntervalHoldsTheTrueAreaAboutAsOftenAsItSays) {
   EXPECT_NEAR(width, 2.0 * 1.96 * 0.077, 0.04) << "one that holds everything tells nothing";
 }
 
+TEST(RocCurve, IsLessSureOfForecastsThatComeInClusters) {
+  // Events score higher by one in half of the clusters, by nothing in the others.
+  Random random(5);
+  std::vector<Forecast> forecasts;
+  for (std::size_t cluster = 0; cluster < 8; ++cluster)
+    for (int i = 0; i < 40; ++i)
+      forecasts.push_back({random.normal() + (i < 20 && cluster % 2 == 0 ? 3.0 : 0.0), i < 20, cluster});
+  const RocCurve clustered = roc_curve(forecasts);
+  for (Forecast& forecast : forecasts) forecast.cluster = 0;
+  const RocCurve independent = roc_curve(forecasts);
+  EXPECT_EQ(clustered.area, independent.area);
+  const auto width = [](const Interval& interval) { return interval.high - interval.low; };
+  EXPECT_GT(width(clustered.confidence), 1.5 * width(independent.confidence));
+  EXPECT_LT(clustered.confidence.low, clustered.area);
+  EXPECT_GT(clustered.confidence.high, clustered.area);
+}
+
+TEST(RocCurve, HasAnIntervalWhereSomeClustersHoldOneKindAlone) {
+  const std::vector<Forecast> forecasts{{0.8, true, 0}, {0.7, true, 0}, {0.2, false, 1}, {0.9, false, 1}};
+  const RocCurve curve = roc_curve(forecasts);  // each replicate with both kinds holds all four
+  EXPECT_EQ(curve.confidence.low, curve.area);
+  EXPECT_EQ(curve.confidence.high, curve.area);
+}
+
 TEST(RocCurve, RefusesWhatHasNoArea) {
   EXPECT_THROW(static_cast<void>(roc_curve({})), InvalidArgument);
   EXPECT_THROW(static_cast<void>(roc_curve(std::vector<Forecast>{{0.1, true}, {0.2, true}})), InvalidArgument);
@@ -67,6 +91,21 @@ TEST(IsSecondWorse, AnOpenRingIsWorseThanAnyClosedOneAndTwoTellNothing) {
   EXPECT_EQ(is_second_worse(3.0, std::nullopt), true);
   EXPECT_EQ(is_second_worse(std::nullopt, 3.0), false);
   EXPECT_EQ(is_second_worse(std::nullopt, std::nullopt), std::nullopt);
+}
+
+TEST(Reliability, CountsForecastsOfOneClusterForLessWhereTheyAreAlike) {
+  std::vector<Forecast> alike, mixed;
+  for (std::size_t i = 0; i < 60; ++i) {
+    alike.push_back({0.5, i % 6 < 3, i % 6});       // all of a cluster, or none
+    mixed.push_back({0.5, i / 6 % 2 == 0, i % 6});  // half of each
+  }
+  const auto interval = [](const std::vector<Forecast>& forecasts) {
+    return reliability(forecasts, 1).bins.front().confidence;
+  };
+  // Wilson's interval of 30 of 60, and of half of 5, as the design effect is 12.
+  EXPECT_NEAR(interval(mixed).low, 0.3774, 1e-4);
+  EXPECT_NEAR(interval(alike).low, 0.1704, 1e-4);
+  EXPECT_NEAR(interval(alike).low + interval(alike).high, 1.0, 1e-12);
 }
 
 TEST(Reliability, CountsByProbability) {

@@ -153,6 +153,7 @@ TEST_F(Pooling, ScoresTheAdviceOverAllSeries) {
   const PooledJson found = pool({series(100, 0.4, 0.1), series(200, 1.8, 0.6)});
   const PooledJson& advice = found.at("advice");
   EXPECT_EQ(advice.at("advised"), 2);
+  EXPECT_EQ(advice.at("intervals_by"), "specimens") << "too few series to draw anew";
   EXPECT_EQ(advice.at("specimens").at(1).at("specimen"), "200/S3");
   EXPECT_EQ(advice.at("worse"), 1);
   EXPECT_EQ(advice.at("auc").at("area"), 1.0);

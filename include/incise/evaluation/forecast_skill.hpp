@@ -13,6 +13,7 @@ namespace incise {
 struct Forecast {
   double said = 0.0;  ///< a probability, or (for a RocCurve) any score that is higher where it is likelier
   bool happened = false;
+  std::size_t cluster = 0;  ///< those of one number have something in common: a calibration, a laboratory
 };
 
 /// A threshold's share of false alarms and of events that it catches.
@@ -26,7 +27,9 @@ struct RocCurve {
   std::size_t happened = 0;  ///< forecasts of something that happened …
   std::size_t did_not = 0;   ///< … and that did not
   double area = 0.0;         ///< P(a score of the first kind is above one of the second) + half of P(equal); in [0, 1]
-  Interval confidence;       ///< of the area, percentiles of a bootstrap that draws both kinds anew, each by itself
+  /// Of the area, percentiles of a bootstrap that draws both kinds anew, each by itself; of forecasts in clusters: that
+  /// draws whole clusters anew, as often as both kinds are among them; 0 to 1 where that is hardly ever so.
+  Interval confidence;
   std::vector<RocPoint> points;  ///< from (0, 0) to (1, 1), both ascending, one for each score that was found
 };
 
@@ -46,7 +49,9 @@ struct ReliabilityBin {
   std::size_t happened = 0;
   double mean_said = 0.0;
   double share = 0.0;   ///< that happened
-  Interval confidence;  ///< of the share, 95 %, Wilson's score interval [Wilson1927]
+  /// Of the share, 95 %, Wilson's score interval [Wilson1927]; of forecasts in clusters: of as many as are worth these
+  /// (their number over the design effect, where that is above 1) [RaoScott1992].
+  Interval confidence;
 };
 
 struct Reliability {
@@ -54,7 +59,8 @@ struct Reliability {
   double brier_score = 0.0;          ///< mean squared difference of probability and event: 0 best, 0.25 for "a half"
 };
 
-/// Predicted against observed: [0, 1] in `bins` equal parts. [Brier1950]
+/// Predicted against observed: [0, 1] in `bins` equal parts. [Brier1950] A share of none or of all tells nothing of a
+/// design effect: its interval takes the forecasts as independent.
 /// @throws InvalidArgument without forecasts, for a probability outside [0, 1], or bins < 1.
 [[nodiscard]] Reliability reliability(std::span<const Forecast> forecasts, std::size_t bins = 5);
 
