@@ -34,6 +34,9 @@ namespace {
 
 using ExperimentJson = nlohmann::ordered_json;
 
+// Of the time of a specimen that is cut as planned and no more: advice and correction; two paths of a forecast.
+constexpr double kCorrectionCost = 2.2, kLearningCost = 1.5;
+
 /// A step of all specimens together cannot be done without.
 void require_done(const StepAnswer& answer, const char* step, const ExperimentSteps& runner) {
   if (answer.end != StepEnd::Done)
@@ -168,11 +171,14 @@ class Experiment {
   void remove_summaries() const;
   void add_outside(std::uint64_t seed);
   [[nodiscard]] double cost_of(const Trial& trial) const;
+  [[nodiscard]] static double cost_of(RivalPath path) { return is_without_simulation(path) ? 0.5 : 0.9; }
   [[nodiscard]] double calibration_cost() const;
   void report_end(const Trial* trial, double cost);
+  void report_part(double cost, double& told);
   void tell();
   void run_trials(TrialRole first, TrialRole last);
-  void run_trial(Trial& trial);
+  /// @returns the part of its cost that was reported on the way.
+  double run_trial(Trial& trial);
   void assess(SpecimenTrial& specimen, Trial& trial);
   [[nodiscard]] ExperimentJson advice_of(SpecimenTrial& specimen, const std::string& step,
                                          const std::filesystem::path& file, const std::filesystem::path& folder,
@@ -183,8 +189,10 @@ class Experiment {
                                        const std::filesystem::path& folder, const std::filesystem::path& calibration,
                                        const std::string& step) const;
   [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa, const ExperimentJson& forecast) const;
-  void cut_rivals(SpecimenTrial& specimen, Trial& trial);
-  void cut_learning(SpecimenTrial& specimen, Trial& trial) const;
+  /// @param told  grows by the cost of what was reported, as below.
+  void cut_rivals(SpecimenTrial& specimen, Trial& trial, double& told);
+  void cut_learning(SpecimenTrial& specimen, Trial& trial, double& told);
+  [[nodiscard]] TrialCut cut_along(RivalPath path, SpecimenTrial& specimen, const StepAnswer& forecast) const;
   void calibrate();
   void compare();
   void write_commands() const;
@@ -346,8 +354,8 @@ void Experiment::run_trials(TrialRole first, TrialRole last) {
   for (Trial& trial : trials_)
     if (trial.role >= first && trial.role <= last) mine.push_back(&trial);
   workers_.for_each(mine.size(), 1, [&](std::size_t i) {
-    run_trial(*mine[i]);
-    report_end(mine[i], cost_of(*mine[i]));
+    const double told = run_trial(*mine[i]);
+    report_end(mine[i], cost_of(*mine[i]) - told);
   });
   tell();
 }
@@ -365,6 +373,11 @@ void Experiment::report_end(const Trial* trial, double cost) {
   if (std::this_thread::get_id() == caller_) tell();
 }
 
+void Experiment::report_part(double cost, double& told) {
+  told += cost;
+  report_end(nullptr, cost);
+}
+
 void Experiment::tell() {
   const std::scoped_lock lock(mutex_);
   for (const std::string& warning : warnings_) monitor_.message(Severity::Warning, warning);
@@ -378,11 +391,11 @@ void Experiment::tell() {
 /// two cores, and used for nothing but the time that is left.
 double Experiment::cost_of(const Trial& trial) const {
   if (trial.role == TrialRole::Calibrate) return 1.0;
-  double cost = 3.2;
+  double cost = 1.0 + kCorrectionCost;
   if (settings_.with_withheld_force) cost += 1.6;
   if (trial.role == TrialRole::Test) {
-    for (const RivalPath path : rivals_) cost += is_without_simulation(path) ? 0.5 : 0.9;
-    cost += 1.5 * static_cast<double>(settings_.learning.size());
+    for (const RivalPath path : rivals_) cost += cost_of(path);
+    cost += kLearningCost * static_cast<double>(settings_.learning.size());
   }
   if (trial.role == TrialRole::Test && settings_.with_known_physics) cost += 1.5;
   return cost;
@@ -394,7 +407,8 @@ double Experiment::calibration_cost() const {
   return specimens * (settings_.is_quick ? 1.2 : 3.0);
 }
 
-void Experiment::run_trial(Trial& trial) {
+double Experiment::run_trial(Trial& trial) {
+  double told = 0.0;
   Workers one(1);
   ExperimentSteps steps(root_ / trial.name, one, monitor_);
   VirtualLaboratory bench({trial.seed, trial.given, truth_ / trial.name, settings_.bench, context_.seed}, steps);
@@ -403,15 +417,17 @@ void Experiment::run_trial(Trial& trial) {
       bench);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
+    if (trial.role != TrialRole::Calibrate) report_part(1.0, told);
     const bool goes_on = trial.planned.is_made && trial.role != TrialRole::Calibrate;
     const bool is_test = goes_on && trial.role == TrialRole::Test;
     if (goes_on) {
       assess(specimen, trial);
       correct(specimen, trial);
+      report_part(kCorrectionCost, told);
     }
     if (goes_on && settings_.with_withheld_force) assess_without_pull(specimen, trial);
-    if (is_test) cut_rivals(specimen, trial);
-    if (is_test) cut_learning(specimen, trial);
+    if (is_test) cut_rivals(specimen, trial, told);
+    if (is_test) cut_learning(specimen, trial, told);
     if (is_test && settings_.with_known_physics) trial.known_physics = bench.known_physics().result;
   }
   trial.stretch_force_n = specimen.stretch_force_n();
@@ -419,6 +435,7 @@ void Experiment::run_trial(Trial& trial) {
   trial.registration_rmse_mm = specimen.registration_rmse_mm();
   trial.ended_at = specimen.ended_at();
   trial.commands = steps.lines();
+  return told;
 }
 
 /// What would be advised before the robot moves. The corrected cut is made on the bench whatever it says: whether the
@@ -517,32 +534,33 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, co
 }
 
 /// Cuts the same specimen along every rival's path.
-void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial) {
+void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial, double& told) {
   StepAnswer forecast;
   if (settings_.with_rivals)
     forecast = forecast_of(specimen, specimen.case_file(), specimen.at("compensated"),
                            root_ / "calibration/calibration.json", "forecast");
-  const bool is_forecast = settings_.with_rivals && forecast.end == StepEnd::Done;
-  if (is_forecast) trial.unlike = forecast.result.at("with_simulation").at("unlike").get<std::vector<std::string>>();
+  if (settings_.with_rivals && forecast.end == StepEnd::Done)
+    trial.unlike = forecast.result.at("with_simulation").at("unlike").get<std::vector<std::string>>();
   for (const RivalPath path : rivals_) {
-    const std::string name{to_string(path)};
-    if (is_of_forecast(path) && !is_forecast) {
-      trial.rivals.push_back({path, {.ended_at = refusal_of("forecast", forecast)}});
-      continue;
-    }
-    const std::filesystem::path file =
-        specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa(), forecast.result));
-    if (path == RivalPath::Robust) {
-      const steps::CalibratedRequest known{root_ / "calibration/calibration.json", specimen.stretch_force_n()};
-      trial.rivals.push_back({path, specimen.cut_robustly(file, known, specimen.at(name), name)});
-      continue;
-    }
-    trial.rivals.push_back({path, specimen.cut_again(file, specimen.at(name), name, !is_without_simulation(path)).cut});
+    trial.rivals.push_back({path, cut_along(path, specimen, forecast)});
+    report_part(cost_of(path), told);
   }
 }
 
+/// @param forecast  of this ring; read for paths that are made of it.
+TrialCut Experiment::cut_along(RivalPath path, SpecimenTrial& specimen, const StepAnswer& forecast) const {
+  const std::string name{to_string(path)};
+  if (is_of_forecast(path) && forecast.end != StepEnd::Done) return {.ended_at = refusal_of("forecast", forecast)};
+  const std::filesystem::path file =
+      specimen.write_variant(name + ".yaml", variant_of(path, specimen.youngs_modulus_kpa(), forecast.result));
+  if (path != RivalPath::Robust)
+    return specimen.cut_again(file, specimen.at(name), name, !is_without_simulation(path)).cut;
+  const steps::CalibratedRequest known{root_ / "calibration/calibration.json", specimen.stretch_force_n()};
+  return specimen.cut_robustly(file, known, specimen.at(name), name);
+}
+
 /// Cuts along what the first photographs alone forecast, without and with simulation.
-void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial) const {
+void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial, double& told) {
   for (const Learning& learning : learning_) {
     const std::string suffix = fmt::format("_{}", learning.photographs);
     const std::filesystem::path file =
@@ -561,6 +579,7 @@ void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial) const {
           name + ".yaml", forecast_variant(path, learning.tool, specimen.youngs_modulus_kpa(), forecast.result));
       made.cut = specimen.cut_again(variant, specimen.at(name), name, !is_without_simulation(path)).cut;
     }
+    report_part(kLearningCost, told);
   }
 }
 
