@@ -15,52 +15,46 @@
 namespace incise::cli {
 namespace {
 
-int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
-  const nlohmann::ordered_json result =
-      run_in_folder(options, "acceptance", [&](const auto& root, const auto& context, auto& workers, auto& console) {
-        return accept_bench(settings, root, context, workers, console);
-      });
-  if (options.json) {
-    print_result(options, result);
-    return kDone;
-  }
-  print_acceptance(result);
-  nlohmann::ordered_json summary = result.at("summary");
-  print_result(options, summary);
+using BenchJson = nlohmann::ordered_json;
+
+/// With --json all of it, else a table for a person and a summary.
+int print_trials(const CommonOptions& options, const BenchJson& result, void (*print_table)(const BenchJson&),
+                 const BenchJson& summary) {
+  if (!options.json) print_table(result);
+  print_result(options, options.json ? result : summary);
   return kDone;
 }
 
+int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
+  const BenchJson result =
+      run_in_folder(options, "acceptance", [&](const auto& root, const auto& context, auto& workers, auto& console) {
+        return accept_bench(settings, root, context, workers, console);
+      });
+  return print_trials(options, result, print_acceptance, result.at("summary"));
+}
+
 int screen(const CommonOptions& options, const ScreeningSettings& settings) {
-  const nlohmann::ordered_json result =
+  const BenchJson result =
       run_in_folder(options, "factors", [&](const auto& root, const auto& context, auto& workers, auto& console) {
         return screen_factors(settings, root, context, workers, console);
       });
-  if (options.json) {
-    print_result(options, result);
-    return kDone;
-  }
-  print_factors(result);
-  nlohmann::ordered_json summary{{"cuts", result.at("cuts")}, {"measured", result.at("measured")}};
+  BenchJson summary{{"cuts", result.at("cuts")}, {"measured", result.at("measured")}};
   summary["left_out"] = result.at("left_out");
   if (!result.at("pairs").empty()) summary["least_p_of_pairs"] = result.at("pairs").front().at("p");
   summary["figure"] = result.at("figure");
-  print_result(options, summary);
-  return kDone;
+  return print_trials(options, result, print_factors, summary);
 }
 
 int pool(const CommonOptions& options, const std::vector<std::filesystem::path>& experiments) {
   const std::filesystem::path output = options.required_output("pooled");
   refuse_input_as_output("-o", output, experiments);
-  Console console(options.level());
-  const nlohmann::ordered_json result = pool_experiments(experiments, output, options.context(), console);
-  if (options.json) {
-    print_result(options, result);
-    return kDone;
+  BenchJson result;
+  {
+    Console console(options.level());  // its bar is gone before the table
+    result = pool_experiments(experiments, output, options.context(), console);
   }
-  print_pooled(result);
-  nlohmann::ordered_json summary{{"pooled", (output / "pooled.json").string()}, {"figure", result.at("figure")}};
-  print_result(options, summary);
-  return kDone;
+  const BenchJson summary{{"pooled", (output / "pooled.json").string()}, {"figure", result.at("figure")}};
+  return print_trials(options, result, print_pooled, summary);
 }
 
 }  // namespace

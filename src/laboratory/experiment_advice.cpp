@@ -244,7 +244,8 @@ std::optional<bool> AdvisedSpecimen::is_worse_without_pull() const {
 
 void describe(Visitor& v, AdvisedSpecimen& s) {
   v("specimen", s.name, "Its name.");
-  v.derived("series", s.series, "That it was cut in, of several, in their order; 0: of one experiment alone.");
+  v.derived("series", s.series,
+            "Those of one number are drawn together for intervals; 0: they are taken as independent.");
   v("role", s.role, "test or outside.");
   v("kind", s.kind, "Of one outside the calibrated range; else empty.");
   v("advice", s.advice, "Of `incise assess`.");
@@ -297,11 +298,8 @@ std::vector<AdvisedSpecimen> advised_specimens(const std::vector<Trial>& trials,
   return specimens;
 }
 
-AdviceJson advice_scores(const std::vector<AdvisedSpecimen>& all, bool are_series_alike) {
-  if (all.empty()) return nullptr;
-  std::vector<AdvisedSpecimen> specimens = all;
-  if (!are_series_alike)
-    for (AdvisedSpecimen& specimen : specimens) specimen.series = 0;
+AdviceJson advice_scores(const std::vector<AdvisedSpecimen>& specimens) {
+  if (specimens.empty()) return nullptr;
   AdviceJson json;
   json["specimen_is"] = "virtual";
   json["advised"] = specimens.size();
@@ -319,7 +317,7 @@ AdviceJson advice_scores(const std::vector<AdvisedSpecimen>& all, bool are_serie
   json["close_margin"] = close_margin_json(specimens);
   json["intervals"] = intervals_json(specimens);
   json["specimens"] = AdviceJson::array();
-  for (const AdvisedSpecimen& specimen : all) json["specimens"].push_back(to_json(specimen));
+  for (const AdvisedSpecimen& specimen : specimens) json["specimens"].push_back(to_json(specimen));
   return json;
 }
 

@@ -37,7 +37,7 @@ struct AdvisedSpecimen {
   std::string advice;
   std::optional<double> expected_gain_mm;
   std::optional<Interval> gain_80, gain_95;
-  std::size_t series = 0;  ///< that it was cut in, of several
+  std::size_t series = 0;  ///< intervals draw those of one number together; all 0: as if they were independent
   std::optional<double> p_worse, p_worse_if_alike, p_worse_if_unlike, p_unlike;
   AdvisedCut planned, corrected;
   std::optional<double> p_worse_without_pull;  ///< the same, had the pull not been measured
@@ -60,9 +60,7 @@ void describe(Visitor& v, AdvisedSpecimen& s);
 ///          `auc_of_outside_alone` (the same of what p_worse is made of; a probability that was not stated counts as
 ///          one half), `close_margin` (reliability of the stated probability), `intervals` (how often those of error
 ///          and gain hold the photographs').
-/// @param are_series_alike  specimens of one series have something in common, which intervals then know of.
-[[nodiscard]] nlohmann::ordered_json advice_scores(const std::vector<AdvisedSpecimen>& specimens,
-                                                   bool are_series_alike = false);
+[[nodiscard]] nlohmann::ordered_json advice_scores(const std::vector<AdvisedSpecimen>& specimens);
 
 /// The same of an experiment's trials, and in `skipped` those that were not advised on and cut twice.
 [[nodiscard]] nlohmann::ordered_json hold_advice_against_truth(const std::vector<Trial>& trials,

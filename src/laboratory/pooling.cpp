@@ -257,7 +257,7 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
     unlike.push_back(laboratory::of_likeness(series.tested, true));
     like.push_back(laboratory::of_likeness(series.tested, false));
     for (AdvisedSpecimen specimen : series.advised) {
-      specimen.series = tested.size();
+      if (is_by_series) specimen.series = tested.size();
       advised.push_back(std::move(specimen));
     }
     if (series.tested.empty())
@@ -280,7 +280,7 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   const std::vector<laboratory::LearningPoint> curve = laboratory::learning_curve(tested);
   result["learning"] = PoolJson::array();
   for (const laboratory::LearningPoint& point : curve) result["learning"].push_back(to_json(point));
-  PoolJson advice = laboratory::advice_scores(advised, is_by_series);
+  PoolJson advice = laboratory::advice_scores(advised);
   if (advice.is_object()) advice["intervals_by"] = is_by_series ? "series" : "specimens";
   result["advice"] = advice;
   AtomicFolder folder(output);

@@ -103,7 +103,7 @@ std::string answer_table(std::span<const ReportIncision> incisions) {
     const char* unknown;
   };
   static constexpr std::array<Row, 3> kRows{
-      {{"Closest approach to the tumour, simulated", &ReportIncision::nearest_to_tumor_mm, "not measured"},
+      {{"Closest approach to the tumour", &ReportIncision::nearest_to_tumor_mm, "not measured"},
        {"Least depth", &ReportIncision::least_depth_mm, "nothing was cut"},
        {"Greatest error", &ReportIncision::greatest_error_mm, "not measured"}}};
   const bool lacks_correction = incisions.size() == 1;

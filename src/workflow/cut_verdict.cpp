@@ -173,8 +173,8 @@ void judge_margin(const Case& settings, const SimulatedCut& cut, const ExpectedE
 void judge_expectation(const ExpectedErrors& expected, Verdict& verdict) {
   if (expected.is_measured) return;
   verdict.add("simulated_margin", {},
-              "the errors that compensation expects of real cuts are known only in part: they need the simulated "
-              "errors of the first cut, and it left no ring round the middle of the tumour's edge");
+              "the margin is judged as simulated: the errors that compensation expects of real cuts need those of the "
+              "first simulated cut, and it left no ring round the middle of the tumour's edge");
 }
 
 void judge_tumor(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {

@@ -46,8 +46,7 @@ ExpectedErrors expected_errors(const Case& settings, const SimulatedCut& first, 
   Case observed = settings;
   if (is_profile) observed.compensation.observable = ContourKind::InnerEdge;  // what a photograph shows
   std::optional<std::vector<double>> simulated = simulated_sectors(observed, first, tumor_edge);
-  expected.is_measured = simulated.has_value();
-  if (!simulated) return expected;
+  if (!simulated) return {.is_measured = false};
   for (double& error : *simulated) error = (share - 1.0) * (error + bias_mm);
   expected.simulated_mm = std::move(*simulated);
   return expected;

@@ -160,7 +160,7 @@ class Calls(StudioTest):
         too_near = [reason["value"] for reason in by_command["before"]["verdict"]["reasons"] if reason["id"] == "lateral_margin"]
         self.assertEqual([run["as_planned"]["numbers"]["nearest_to_tumor_mm"]], too_near)
         page = (other / "report.html").read_text()
-        for key, name in (("nearest_to_tumor_mm", "Closest approach to the tumour, simulated"), ("least_depth_mm", "Least depth"), ("greatest_error_mm", "Greatest error")):
+        for key, name in (("nearest_to_tumor_mm", "Closest approach to the tumour"), ("least_depth_mm", "Least depth"), ("greatest_error_mm", "Greatest error")):
             row = page.split(f'<th scope="row">{name}</th>')[1].split("</tr>")[0]
             self.assertIn(f">{run['as_planned']['numbers'][key]:.2f} mm</td>".replace("-", "−"), row, name)
         findings = html.unescape(page.split('id="findings"')[1].split("</section>")[0])

@@ -44,6 +44,27 @@ TEST(ErrorProfile, RunsCounterClockwiseFromTheStartDirectionWhicheverWayTheConto
   }
 }
 
+TEST(SectorMeans, AreThoseOfAnErrorProfileForItsValues) {
+  const Contour ring = testing::circle(14.5, 3600, Vec3(1.0, 0.0, 0.0)), edge = testing::circle(10.0, 720);
+  std::vector<double> errors;
+  for (const Vec3& p : ring.points) errors.push_back(p.norm() - 10.0 - 4.5);
+  ProfileSettings settings;
+  settings.start_direction = Vec3::UnitX();
+  const auto means = sector_means(ring.points, errors, edge, settings);
+  const auto profile = error_profile(ring, edge, settings);
+  ASSERT_TRUE(means && profile);
+  for (std::size_t k = 0; k < means->size(); ++k) EXPECT_NEAR(means->at(k), profile->at(k), 0.01) << k;
+  settings.sectors = 1;
+  EXPECT_NEAR(sector_means(ring.points, errors, edge, settings)->front(), 0.0, 0.05);
+}
+
+TEST(SectorMeans, AreAbsentWhereASectorIsEmptyAndNeedAValueForEachPlace) {
+  const Points half{Vec3(14, 1, 0), Vec3(14, -1, 0)};
+  EXPECT_FALSE(sector_means(half, std::vector{1.0, 2.0}, testing::circle(10.0, 720), {}));
+  EXPECT_THROW(static_cast<void>(sector_means(half, std::vector{1.0}, testing::circle(10.0, 720), {})),
+               InvalidArgument);
+}
+
 TEST(ErrorProfile, DoesNotSeeHeightsAlongTheCamerasAxis) {
   Contour ring = testing::circle(14.5, 360);
   for (Vec3& p : ring.points) p.z() = 3.0 + 0.2 * p.x();

@@ -255,6 +255,7 @@ TEST(ExpectedErrors, AreBiasResidualAndWhatTheShareLeavesOfTheFirstCut) {
   first.incision.kerf.layers.clear();
   const ExpectedErrors unmeasured = expected_errors(settings, first, circle(10.0));
   EXPECT_FALSE(unmeasured.is_measured) << "no ring to take a share of";
+  EXPECT_FALSE(unmeasured.is_any());
   EXPECT_THAT(ids_of(verdict_of_cut(settings, sound_cut(), unmeasured)), ElementsAre("simulated_margin"));
 }
 

@@ -336,13 +336,19 @@ TEST(DefaultConstraints, AreRefusedForABodyThatTheirLengthsWereNotMadeFor) {
                   ::testing::AllOf(::testing::HasSubstr("specimen.constraints"), ::testing::HasSubstr("9 mm long"))));
 }
 
+/// Photographs of cuts along the planned path, all 0.8 mm too near.
+Case case_by_photographs() {
+  Case settings = coarse_case();
+  settings.compensation.method = CompensationMethod::Profile;
+  settings.compensation.photographed_mm = {-0.8};
+  return settings;
+}
+
 TEST(RunStudy, ByAProfileMovesThePathWithoutAnySimulatedCutUntilItIsVerified) {
   Block block;
   Workers workers(2);
   Monitor silent;
-  Case settings = coarse_case();
-  settings.compensation.method = CompensationMethod::Profile;
-  settings.compensation.photographed_mm = {-0.8};
+  Case settings = case_by_photographs();
   const Study moved = run_study(settings, block, block.cache, {.until = Stage::Compensate}, workers, silent);
   EXPECT_FALSE(moved.as_planned);
   ASSERT_TRUE(moved.correction && moved.plan);
@@ -362,9 +368,7 @@ TEST(RunStudy, JudgesEveryCutByWhatIsExpectedAlongThePlannedPath) {
   Block block;
   Workers workers(2);
   Monitor silent;
-  Case settings = coarse_case();
-  settings.compensation.method = CompensationMethod::Profile;
-  settings.compensation.photographed_mm = {-0.8};
+  Case settings = case_by_photographs();
   settings.close_margin_mm = 4.9;  // so that every cut is too near, and the verdict says how near
   const Study study = run_study(settings, block, block.cache, {}, workers, silent);
   ASSERT_TRUE(study.as_planned && study.corrected);

@@ -13,10 +13,13 @@ namespace incise {
 struct ExpectedErrors {
   std::vector<double> listed_mm;     ///< what the case lists, and its bias; empty: nothing
   std::vector<double> simulated_mm;  ///< what its share leaves of simulated errors or adds to them; empty: nothing
-  bool is_measured = true;           ///< false: that share is needed, and the first cut left no ring to measure
+  /// false: a share of simulated errors is needed, and the first cut left no ring to measure. Then nothing is expected.
+  bool is_measured = true;
   Contour tumor_edge;                ///< of the intended path, in the stretched tissue before the cut
   [[nodiscard]] bool is_any() const { return !listed_mm.empty() || !simulated_mm.empty(); }
-  /// At places in the view. @param edge  the tumour edge about whose middle they lie. O(places).
+  /// @param places  in the coordinates of `edge`, seen along the approach.
+  /// @param edge    the tumour edge about whose middle they lie, closed, mm.
+  /// @returns what is expected at each place, mm, positive: farther from the tumour. O(places).
   [[nodiscard]] std::vector<double> at(const Case& settings, const Points& places, const Contour& edge) const;
 };
 

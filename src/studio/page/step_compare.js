@@ -16,7 +16,7 @@ import {ink, intended, isDark} from "./colours.js";
 import {countText, mm, spoken} from "./words.js";
 
 const kNumbers = [
-  ["nearest_to_tumor_mm", "Closest approach to the tumour, simulated"],
+  ["nearest_to_tumor_mm", "Closest approach to the tumour"],
   ["least_depth_mm", "Least depth"],
   ["greatest_error_mm", "Greatest error"],
   ["mean_error_mm", "Mean error"],
