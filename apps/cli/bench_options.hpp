@@ -6,19 +6,19 @@
 
 namespace incise::cli {
 
-/// Of a verb whose specimens are drawn: what `--factors` says where nothing else is meant.
+/// Meaning of `--factors` for verbs that draw their specimens, unless a verb says otherwise.
 inline constexpr const char* kVaries =
     "Of laboratory 2: what varies beside placement, stretch and stiffness; the rest has the defaults of `incise schema "
     "bench2`. By default everything; none: nothing more";
 
-/// `--factors`: none, or names of factors of laboratory 2.
+/// Adds `--factors`: none, or names of factors of laboratory 2.
 void add_factors(CLI::App& verb, const std::string& meaning, const std::function<void(second_bench::Factors)>& take);
 
-/// `--override`: checks of the program that may fail.
+/// Adds `--override`: checks of the program that may fail.
 void add_overrides(CLI::App& verb, std::vector<std::string>& overrides);
 
-/// Work that goes on in its folder where it was interrupted; says so where it is interrupted again.
-/// @param work  of (folder, context, workers, console).
+/// Runs work that continues in its folder where it was interrupted. If it is interrupted again, the error says so.
+/// @param work  called with folder, context, workers and console.
 [[nodiscard]] nlohmann::ordered_json run_in_folder(
     const CommonOptions& options, const char* example,
     const std::function<nlohmann::ordered_json(const std::filesystem::path&, const RunContext&, Workers&, Console&)>&

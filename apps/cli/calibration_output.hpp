@@ -6,7 +6,7 @@
 
 namespace incise::cli {
 
-/// The table and what the data tell, for a person.
+/// Prints the table, and which parameters the data identify.
 void print_calibration(const Calibration& calibration, const std::filesystem::path& folder);
 
 }  // namespace incise::cli

@@ -12,7 +12,7 @@
 namespace incise::cli {
 namespace {
 
-// A signal handler can reach nothing but a flag of this kind.
+// A signal handler may access only a flag of this type.
 volatile std::sig_atomic_t g_is_interrupted = 0;
 
 void on_interrupt(int) {
@@ -31,7 +31,7 @@ Console::Console(Level level) : level_(level), is_terminal_(::isatty(STDERR_FILE
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
 #ifdef SIGXFSZ
-  std::signal(SIGXFSZ, SIG_IGN);  // a file above the limit is a write that fails, and told as one
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is then a failed write, and reported as one
 #endif
 }
 

@@ -8,8 +8,9 @@
 
 namespace incise::cli {
 
-/// Messages and progress on standard error: a bar with the time left on a terminal, a plain line every few seconds otherwise.
-/// Ctrl-C asks the computation to stop; a second one ends the program at once.
+/// Shows messages and progress on standard error: on a terminal a bar with the time left, otherwise a plain line every
+/// few seconds.
+/// Ctrl-C asks the computation to stop; a second Ctrl-C ends the program at once.
 class Console : public Monitor {
  public:
   enum class Level { Quiet, Normal, Verbose };

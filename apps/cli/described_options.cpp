@@ -15,7 +15,7 @@
 namespace incise::cli {
 namespace {
 
-/// Shows one field of a value as an option has it, or sets it from the texts that were given; leaves all others.
+/// Shows one field of a value as option text, or sets it from the given texts; leaves all others.
 class OneField : public Visitor {
  public:
   explicit OneField(std::string_view name, const std::vector<std::string>* texts = nullptr)
@@ -77,7 +77,7 @@ class OneField : public Visitor {
   }
 
   bool is_found = false;
-  std::string meaning, type, expected, shown;  ///< `shown`: the value, as it would be given
+  std::string meaning, type, expected, shown;  ///< `shown`: the value as option text
   std::size_t count = 1;                       ///< of texts; kUnchanged: any
 
  private:

@@ -39,7 +39,7 @@ void print_paths(const char* of, const nlohmann::ordered_json& result) {
         "no specimen was closed along two paths without a simulated cut: no benefit of simulation can be claimed\n");
 }
 
-/// What photographs are worth, without and with simulation. @param curve  empty: nothing.
+/// Prints the errors by number of photographs, without and with simulation. @param curve  empty: prints nothing.
 void print_learning(const nlohmann::ordered_json& curve) {
   if (curve.empty()) return;
   fmt::print("{:<34} {:>10} {:>10} {:>9}  {}\n", "photographs", "without", "with", "specimens",
@@ -57,7 +57,7 @@ void print_learning(const nlohmann::ordered_json& curve) {
   }
 }
 
-/// How the advice held against what happened. @param advice  null: nothing.
+/// Prints how the advice compares with the outcomes. @param advice  null: prints nothing.
 void print_advice(const nlohmann::ordered_json& advice) {
   if (!advice.is_object()) return;
   print_area("advice: area under the curve", advice.at("auc"));

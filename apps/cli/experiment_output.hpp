@@ -4,7 +4,7 @@
 
 namespace incise::cli {
 
-// What a person wants of an experiment and of several; everything is in their files and reports.
+// Summaries of one and of several experiments for a person. Their files and reports contain everything.
 
 /// @param result  study.json of an experiment.
 void print_experiment(const nlohmann::ordered_json& result);

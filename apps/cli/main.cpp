@@ -32,7 +32,7 @@ std::string joined(int argc, char** argv) {
   return line;
 }
 
-/// CLI11 only says that a verb is required.
+/// Refuses an unknown verb by its name; CLI11 would only say that a verb is required.
 void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
   std::vector<std::string> verbs;
   for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
@@ -43,10 +43,10 @@ void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
                   fmt::format("Did you mean '{}'?", nearest_name(word, verbs)));
 }
 
-/// strtod and CLI11 take "nan" and "inf" for numbers, and no range check stops a NaN.
+/// strtod and CLI11 accept "nan" and "inf" as numbers, and no range check stops a NaN.
 void refuse_numbers_that_are_not_finite(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
-    std::string word = argv[i], name = argv[i];  // name: the option that the number belongs to, where there is one
+    std::string word = argv[i], name = argv[i];  // name: the option of the number, if there is one
     const std::size_t equals = word.find('=');
     if (word.rfind("--", 0) == 0 && equals != std::string::npos) {
       name = word.substr(0, equals);
@@ -62,13 +62,14 @@ void refuse_numbers_that_are_not_finite(int argc, char** argv) {
   }
 }
 
-/// What a terminal can show: '?' for every byte that is not ASCII.
+/// Returns text that any terminal can show: '?' for every byte that is not ASCII.
 std::string printable(std::string text) {
   std::ranges::replace_if(text, [](char c) { return static_cast<unsigned char>(c) >= 0x80 || static_cast<unsigned char>(c) < 0x20; }, '?');
   return text;
 }
 
-/// Names end up in JSON files (manifests, results), which hold nothing but UTF-8: found out at their writing, it would be too late.
+/// Names are written into JSON files (manifests, results), which must be UTF-8; at that point an error would be too
+/// late.
 void refuse_names_that_are_not_utf8(int argc, char** argv) {
   constexpr const char* kExpected = "UTF-8";
   constexpr const char* kHint = "Rename that file or folder";
@@ -80,7 +81,7 @@ void refuse_names_that_are_not_utf8(int argc, char** argv) {
   if (first_not_utf8(here)) throw CaseError("command line", "working folder", fmt::format("'{}'", printable(here)), kExpected, kHint);
 }
 
-/// `incise help VERB` is `incise VERB --help`, and so is `incise` alone.
+/// Turns `incise help VERB` into `incise VERB --help`, and `incise` alone into `incise --help`.
 std::vector<char*> without_help_verb(int argc, char** argv) {
   static char help[] = "--help";
   std::vector<char*> words(argv, argv + argc);
@@ -146,7 +147,7 @@ int main(int argc, char** argv) {
     std::vector<char*> words = without_help_verb(argc, argv);
     const int status = run(static_cast<int>(words.size()), words.data());
     finish_standard_output();
-    return argc < 2 ? kBadCase : status;  // nothing was asked for
+    return argc < 2 ? kBadCase : status;  // no verb was given
   } catch (const CaseError& error) {
     say(fmt::format("incise: {}\n", error.what()));
     return kBadCase;
@@ -162,7 +163,7 @@ int main(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     say(fmt::format("incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message()));
     return kBadData;
-  } catch (const std::system_error& error) {  // fmt, where standard output takes no more
+  } catch (const std::system_error& error) {  // from fmt, if standard output accepts no more
     say(fmt::format("incise: standard output: found {}, expected one that accepts all that is printed\n",
                     error.code().message()));
     return kBadData;

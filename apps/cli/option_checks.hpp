@@ -13,39 +13,39 @@
 
 namespace incise::cli {
 
-/// A finite number, all of the text; a leading + is allowed.
+/// Returns the finite number that is the whole text; a leading + is allowed.
 [[nodiscard]] std::optional<double> number_in(const std::string& text);
 
-/// A check of an option's number in the words of all other errors: option, found, expected. The option's name is given
-/// because a check does not learn it. It throws CaseError.
+/// Checks an option's number and throws a CaseError in the form of all other errors: option, found, expected. The
+/// option's name is a parameter because a check does not receive it.
 [[nodiscard]] CLI::Validator above_zero(const std::string& option);
 /// From low to high, both allowed.
 [[nodiscard]] CLI::Validator between(const std::string& option, double low, double high);
 
 /// 0 is allowed.
 [[nodiscard]] CLI::Validator zero_or_more(const std::string& option);
-/// Any that is finite.
+/// Any finite number.
 [[nodiscard]] CLI::Validator finite(const std::string& option);
-/// Digits alone: neither 2.5 nor 1e3 nor 010. From low to high, both allowed.
+/// Only digits: not 2.5, 1e3 or 010. From low to high, both allowed.
 [[nodiscard]] CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::uint64_t high);
 
-/// One of an enum's names.
+/// One of the names of an enum.
 template <Named E>
 [[nodiscard]] CLI::Validator name_of_any() {
   const Names names = names_of(E{});
   return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
 }
-/// The value that such a name stands for. @pre the name has been checked
+/// Returns the value of such a name. @pre the name has been checked
 template <Named E>
 [[nodiscard]] E value_named(const std::string& name) {
   return value_of<E>(name).value();
 }
 
-/// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), as one about the option of that
-/// name (--close-margin-mm); nothing for none.
+/// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), named after its option
+/// (--close-margin-mm). Does nothing without violations.
 void require_valid(const std::vector<Problem>& violations);
 
-/// Three numbers of an option as a direction. @throws CaseError for one of length 0.
+/// Returns three numbers of an option as a direction. @throws CaseError for a direction of length 0.
 [[nodiscard]] Vec3 direction_of(const std::vector<double>& numbers, const char* option);
 
 }  // namespace incise::cli

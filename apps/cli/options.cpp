@@ -16,7 +16,7 @@
 namespace incise::cli {
 namespace {
 
-constexpr std::uint64_t kGreatestSeed = 1'000'000'000'000'000;  // a study counts on from it; exact in JSON
+constexpr std::uint64_t kGreatestSeed = 1'000'000'000'000'000;  // a run counts on from it; exact in JSON
 
 void choose_isa(const std::string& name) {
   const Isa isa = value_named<Isa>(name);
@@ -53,7 +53,7 @@ void refuse_input_as_output(const std::string& option, const std::filesystem::pa
 }
 
 bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer) {
-  // Of a name that does not exist yet only an absolute one is resolved.
+  // For a name that does not exist yet, only an absolute path is resolved.
   const auto a = std::filesystem::weakly_canonical(std::filesystem::absolute(inner));
   const auto b =
       std::filesystem::weakly_canonical(std::filesystem::absolute(outer.has_filename() ? outer : outer.parent_path()));
@@ -71,7 +71,7 @@ void refuse_same_output(const std::string& option, const std::filesystem::path& 
 OlderOutput::OlderOutput(std::filesystem::path output, Console& console)
     : output_(std::move(output)), console_(console) {
   std::error_code absent;
-  // A device or a pipe is of no run.
+  // A device or a pipe does not belong to a run.
   is_there_ = std::filesystem::is_regular_file(output_, absent) || std::filesystem::is_directory(output_, absent);
 }
 
@@ -79,7 +79,7 @@ OlderOutput::~OlderOutput() {
   if (!is_there_) return;
   try {
     console_.message(Severity::Warning, fmt::format("{} is of an earlier run and was left as it is", output_.string()));
-  } catch (...) {  // a message that cannot be shown is no reason to end the program
+  } catch (...) {  // a message that cannot be shown does not end the program
   }
 }
 

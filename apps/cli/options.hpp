@@ -28,19 +28,19 @@ inline constexpr int kBadData = 3;
 inline constexpr int kNotAcceptable = 4;
 inline constexpr int kInterrupted = 130;
 
-/// Whether a path is a folder, or lies anywhere in it. Links are followed; neither has to exist.
+/// Whether a path is a folder, or lies anywhere within it. Links are followed; neither has to exist.
 [[nodiscard]] bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer);
 
-/// Refuses an output that is an input, that is a folder with an input in it (it would be replaced with all that it
-/// holds), or that lies in a folder that is an input (status 2). Empty names: nothing to refuse.
+/// Refuses (status 2) an output that is an input, that is a folder with an input in it (its whole content would be
+/// replaced), or that lies in a folder that is an input. Empty names are skipped.
 void refuse_input_as_output(const std::string& option, const std::filesystem::path& output,
                             const std::vector<std::filesystem::path>& inputs);
 
-/// Refuses two outputs of one name (status 2): the second would replace the first. Empty names: nothing to refuse.
+/// Refuses (status 2) two outputs of the same name: the second would replace the first. Empty names are skipped.
 void refuse_same_output(const std::string& option, const std::filesystem::path& output, const std::string& other_option,
                         const std::filesystem::path& other);
 
-/// What every verb understands.
+/// Options of every verb.
 struct CommonOptions {
   std::filesystem::path output;
   bool json = false;
@@ -59,12 +59,12 @@ struct CommonOptions {
     return quiet ? Console::Level::Quiet : verbose ? Console::Level::Verbose : Console::Level::Normal;
   }
   [[nodiscard]] RunContext context() const;
-  /// The output, or CaseError where a verb needs one and none was given.
+  /// Returns the output. @throws CaseError if none was given. @param example  for the message.
   [[nodiscard]] std::filesystem::path required_output(const char* example) const;
 };
 
-/// Watches over an output that an earlier run left: where this run writes none, that is said when it ends, however it
-/// ends, so that nobody takes the old one for the new one.
+/// Watches over an output of an earlier run. If this run writes none, a message says so at its end, however it ends, so
+/// nobody takes the old output for the new one.
 class OlderOutput {
  public:
   OlderOutput(std::filesystem::path output, Console& console);
@@ -73,7 +73,7 @@ class OlderOutput {
   OlderOutput& operator=(const OlderOutput&) = delete;
   /// The output has been written.
   void replaced() { is_there_ = false; }
-  /// Its name, or null where there is none: the key `stale_output` of a refusal.
+  /// Returns its name, or null if there is none: the key `stale_output` of a refusal.
   [[nodiscard]] nlohmann::ordered_json json() const;
 
  private:
@@ -82,16 +82,16 @@ class OlderOutput {
   bool is_there_ = false;
 };
 
-/// A verb is added to the application together with what it does: a function that returns the exit status.
+/// Adds verbs to the application, each with a function that does its work and returns the exit status.
 class Application {
  public:
   Application(CLI::App& app, std::string command_line) : app_(app), command_line_(std::move(command_line)) {}
 
-  /// @param what  in --help, where the line in the list of verbs (verb_list.cpp) does not say all; else "".
+  /// @param what  shown in --help if the line in the list of verbs (verb_list.cpp) does not say all; else "".
   /// @param example  shown at the end of --help.
   CLI::App* add_verb(const std::string& name, const std::string& what, const std::string& example,
                      std::function<int(const CommonOptions&)> run);
-  /// The same with options of its own, which `run` takes before the common ones.
+  /// As above, for a verb with its own options, which `run` takes before the common ones.
   template <typename Arguments>
   std::pair<CLI::App*, Arguments&> add_verb(const std::string& name, const std::string& what,
                                             const std::string& example,
@@ -101,7 +101,7 @@ class Application {
         add_verb(name, what, example, [=](const CommonOptions& options) { return run(*arguments, options); });
     return {verb, *arguments};
   }
-  /// A verb of several words: `group` holds the verbs that follow it, one of which has to be given.
+  /// Adds a verb of several words: `group` holds the verbs that follow it, of which one must be given.
   CLI::App* add_group(const std::string& group, const std::string& what, const std::string& example);
   CLI::App* add_verb_to(CLI::App& group, const std::string& name, const std::string& what, const std::string& example,
                         std::function<int(const CommonOptions&)> run);
@@ -115,16 +115,16 @@ class Application {
 
 /// Prints the result: with --json the one object on standard output, else a short table.
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result);
-/// Runs a step of the library with the command's console and threads, and prints what it found.
-/// @param print  print_result, or what a person wants of it instead. @returns the exit status.
+/// Runs a step of the library with the command's console and threads, and prints its result.
+/// @param print  print_result, or another summary for a person. @returns the exit status.
 int run_step(const CommonOptions& options, const std::function<steps::StepResult(const steps::StepContext&)>& step,
              const std::function<void(const CommonOptions&, const nlohmann::ordered_json&)>& print = print_result);
-/// The same for a whole loop: for a person, the measures that matter of the two cuts side by side.
+/// As print_result for a whole loop: for a person, the main measures of the two cuts side by side.
 void print_study(const CommonOptions& options, const nlohmann::ordered_json& result);
 
 void add_forecast(Application& application);
 void add_assess(Application& application);
-void add_bench(Application& application);  ///< bench make, bench cut, bench floor, and those of the next
+void add_bench(Application& application);  ///< bench make, bench cut, bench floor, and those of add_bench_series
 void add_bench_series(Application& application, CLI::App& bench);  ///< bench accept, bench factors, bench pool
 void add_calibrate(Application& application);
 void add_demo(Application& application);
@@ -137,7 +137,7 @@ void add_compensate(Application& application);
 void add_surface(Application& application);
 void add_register(Application& application);
 void add_track(Application& application);
-void add_power(Application& application);  ///< the lowest power that fits, on the virtual bench
+void add_power(Application& application);  ///< lowest power that fits, on the virtual bench
 void add_project(Application& application);
 void add_export(Application& application);
 void add_replay(Application& application);

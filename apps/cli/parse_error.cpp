@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kCommandLine = "command line";
 
-/// The verb that the parse had come to; the application itself where it had come to none.
+/// Returns the verb that the parser had reached, or the application if it had reached none.
 const CLI::App& verb_reached(const CLI::App& app) {
   const CLI::App* at = &app;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().back();
@@ -31,7 +31,8 @@ std::string hint_for(const CLI::App& verb) {
   return fmt::format("`{} --help` explains it", words_of(verb));
 }
 
-/// The option that a message of CLI11 is about ("--frames: …", "Could not convert: --frames = …", "case is required").
+/// Returns the option that a message of CLI11 is about ("--frames: …", "Could not convert: --frames = …", "case is
+/// required").
 const CLI::Option* option_named_in(const CLI::App& verb, const std::string& message) {
   for (const CLI::Option* option : verb.get_options()) {
     const std::string name = option->get_name();
@@ -42,7 +43,7 @@ const CLI::Option* option_named_in(const CLI::App& verb, const std::string& mess
   return nullptr;
 }
 
-/// A number as it is, a word in quotes.
+/// Returns a number unchanged, a word in quotes.
 std::string quoted(const std::string& text) {
   char* end = nullptr;
   static_cast<void>(std::strtod(text.c_str(), &end));
@@ -92,7 +93,7 @@ CaseError wrong_count(const CLI::Option& option, const CLI::App& verb) {
 
 CaseError not_understood(const CLI::App& verb) {
   const std::vector<std::string> extras = verb.remaining(true);
-  // An option's value is left over with it, and before it.
+  // If an option is left over, so is its value, which comes first.
   const auto unknown =
       std::find_if(extras.begin(), extras.end(), [](const std::string& word) { return word.starts_with('-'); });
   const std::string first = unknown != extras.end() ? *unknown : extras.empty() ? "" : extras.front();
@@ -121,7 +122,7 @@ CaseError no_verb(const CLI::App& group) {
 
 CaseError as_case_error(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& verb = verb_reached(app);
-  // By its exit code: an error's name may be that of a verb.
+  // Uses the exit code, because the name of an error may be the name of a verb.
   const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
   const std::string message = error.what();
   if (kind == CLI::ExitCodes::ExtrasError) return not_understood(verb);

@@ -6,8 +6,8 @@
 
 namespace incise::cli {
 
-/// What is wrong with the command line, in the words of all errors: which option, what was found, what is expected.
-/// @param app  as it stands after the parse that failed.
+/// Returns the parser's error in the form of all other errors: which option, what was found, what is expected.
+/// @param app  in its state after the failed parse.
 [[nodiscard]] CaseError as_case_error(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace incise::cli

@@ -6,10 +6,10 @@
 
 namespace incise::cli {
 
-/// The table of `incise power` for a person.
+/// Prints the table of `incise power` for a person.
 void print_power(const laboratory::PowerResult& result, const std::filesystem::path& folder);
 
-/// The speed of the timed cuts, for a person.
+/// Prints the speed of the timed cuts for a person.
 void print_speed(const SpeedEstimate& speed);
 
 }  // namespace incise::cli

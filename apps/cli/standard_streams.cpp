@@ -33,7 +33,7 @@ void finish_standard_output() {
   errno = 0;
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return;
-  if (errno == 0 && ::write(STDOUT_FILENO, "\n", 1) == 1) errno = 0;  // it failed earlier: asked for its reason once more
+  if (errno == 0 && ::write(STDOUT_FILENO, "\n", 1) == 1) errno = 0;  // it failed earlier: writes again to learn why
   throw DataError("standard output", "", errno != 0 ? std::strerror(errno) : "a failed write",
                   "one that accepts all that is printed",
                   "Files that were named as output are complete");

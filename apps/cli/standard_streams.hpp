@@ -4,15 +4,16 @@
 
 namespace incise::cli {
 
-/// Writes to standard error. Where nobody can read that, the work goes on: what counts is in files, on standard output, and in the exit status.
+/// Writes to standard error. A failure is ignored: the results are in files, on standard output, and in the exit
+/// status.
 void say(std::string_view text);
 
-/// Makes the three standard streams usable before any file is opened, which would else take the place of a closed one and receive what is
-/// printed. A closed pipe becomes a failed write in place of the end of the process.
-/// @throws DataError where standard output is closed.
+/// Makes the three standard streams usable before any file is opened. A file would otherwise take the place of a closed
+/// stream and receive what is printed. Writing to a closed pipe then fails instead of ending the process.
+/// @throws DataError if standard output is closed.
 void prepare_standard_streams();
 
-/// Brings what was printed to its place. @throws DataError where standard output could not take all of it.
+/// Flushes standard output. @throws DataError if it did not accept everything.
 void finish_standard_output();
 
 }  // namespace incise::cli

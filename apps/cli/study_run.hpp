@@ -10,30 +10,30 @@
 
 namespace incise::cli {
 
-/// What the verbs that cut understand beside the common options.
+/// Options of the verbs that cut, beside the common ones.
 struct CutOptions {
-  std::optional<int> frames;    ///< --frames: in place of the case's cut.frames
-  bool must_resume = false;     ///< --resume: go on from a checkpoint or not at all
+  std::optional<int> frames;    ///< --frames: replaces the case's cut.frames
+  bool must_resume = false;     ///< --resume: continue from a checkpoint or not at all
   double checkpoint_s = 30.0;   ///< --checkpoint-s: least wall time between two checkpoints
-  std::optional<CompensationMethod> method = std::nullopt;  ///< --method: in place of the case's compensation.method
-  std::vector<std::string> accepted = {};  ///< --accept: cautions that a person takes on them
+  std::optional<CompensationMethod> method = std::nullopt;  ///< --method: replaces the case's compensation.method
+  std::vector<std::string> accepted = {};  ///< --accept: cautions that a person accepts
 };
-/// Adds them to a verb; `options` receives what is given.
+/// Adds these options to a verb; `options` receives the given values.
 void add_cut_options(CLI::App& verb, CutOptions& options);
 /// Adds --method to a verb that corrects the path.
 void add_compensation_method(CLI::App& verb, CutOptions& options);
 
-/// The case, and the files that it names looked for, with what the command line says in place of the case.
+/// Reads the case, checks that the files it names exist, and replaces settings that the command line gives.
 [[nodiscard]] CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut);
 
-/// The case as asked, its output, and how far it is run.
+/// Returns the case, its output, and the last stage to run.
 [[nodiscard]] steps::CaseRequest case_request(const std::filesystem::path& case_path, Stage until,
                                               const CommonOptions& options, const CutOptions& cut);
 
-/// Where the results of a case go when -o is not given: `out/` beside the case file.
+/// Returns the folder for the results of a case: -o, else `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
 
-/// The whole loop with program and report: what `run` and `demo` do. @returns the exit status.
+/// Runs the whole loop with program and report, for `run` and `demo`. @returns the exit status.
 int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,
                    const CommonOptions& options, const CutOptions& cut);
 

@@ -19,7 +19,7 @@ std::string shown(const nlohmann::ordered_json& value) {
   return value.dump();
 }
 
-/// "abs_error_mm.mean" stays one name; long lists of numbers are left to --json.
+/// Prints nested keys as one name, "abs_error_mm.mean"; long lists of numbers are left to --json.
 void print_lines(const nlohmann::ordered_json& object, const std::string& prefix) {
   constexpr std::size_t kLongList = 6;
   for (const auto& [key, value] : object.items()) {
@@ -64,7 +64,7 @@ std::string shown_at(const nlohmann::ordered_json& result, const char* part, con
   return cut != result.end() && cut->is_object() && cut->contains(place) ? shown(cut->at(place)) : "-";
 }
 
-/// How the error fell from pass to pass, against what the mesh can do.
+/// Prints how the error fell from pass to pass, against the mesh-resolution limit.
 void print_passes(const nlohmann::ordered_json& result) {
   const nlohmann::ordered_json::json_pointer history("/correction/history");
   if (!result.contains(history)) return;
@@ -76,7 +76,7 @@ void print_passes(const nlohmann::ordered_json& result) {
   fmt::print("{:<36} {}\n", "mesh-resolution limit, mm", shown(correction.at("floor_mm")));
 }
 
-/// What is to be expected of each path over a calibration's posterior.
+/// Prints the expected error of each path over a calibration's posterior.
 void print_risks(const nlohmann::ordered_json& result) {
   const auto robust = result.find("robust");
   if (robust == result.end() || !robust->is_object()) return;

@@ -36,7 +36,7 @@ Json audit_json(const Audit& audit, const PublishedTable& table) {
 }
 
 void print_audit(const Audit& audit, const PublishedTable& table) {
-  // A rule whose column was not understood finds nothing, which is not the same as nothing to find.
+  // A rule whose column was not recognised finds nothing, which does not mean that there is nothing to find.
   fmt::print("columns read: {}\n", fmt::join(table.number_columns, ", "));
   if (!table.name_columns.empty()) fmt::print("names, not numbers: {}\n", fmt::join(table.name_columns, ", "));
   for (const AuditedRow& row : audit.rows) {

@@ -17,7 +17,7 @@ namespace {
 
 using BenchJson = nlohmann::ordered_json;
 
-/// With --json all of it, else a table for a person and a summary.
+/// Prints everything with --json, else a table and a summary for a person.
 int print_trials(const CommonOptions& options, const BenchJson& result, void (*print_table)(const BenchJson&),
                  const BenchJson& summary) {
   if (!options.json) print_table(result);
@@ -50,7 +50,7 @@ int pool(const CommonOptions& options, const std::vector<std::filesystem::path>&
   refuse_input_as_output("-o", output, experiments);
   BenchJson result;
   {
-    Console console(options.level());  // its bar is gone before the table
+    Console console(options.level());  // destroyed before the table is printed, to remove its bar
     result = pool_experiments(experiments, output, options.context(), console);
   }
   const BenchJson summary{{"pooled", (output / "pooled.json").string()}, {"figure", result.at("figure")}};

@@ -18,14 +18,14 @@ struct CalibrateArguments {
   std::string method = "fit";
 };
 
-/// One entry for each case, or none where that is allowed.
+/// Requires one entry per case, or none if that is allowed.
 void require_one_each(const char* option, std::size_t found, std::size_t cases, const char* what) {
   if (found == cases) return;
   throw CaseError("command line", option, fmt::format("{} for {} {}", found, cases, cases == 1 ? "case" : "cases"),
                   fmt::format("one {} for each case, in the same order", what));
 }
 
-/// A value that is given twice would be one row of the grid twice.
+/// Refuses a repeated value, which would repeat a row of the grid.
 void require_different_values(const char* option, std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto twice = std::adjacent_find(values.begin(), values.end());

@@ -17,7 +17,7 @@ struct CompareArguments : steps::CompareRequest {
   std::string measure = "absolute";
 };
 
-/// A file that stands for two specimens would make two of one.
+/// Refuses a file that is given twice: it would count as two specimens.
 void require_different(const steps::CompareRequest& arguments) {
   std::set<std::filesystem::path> seen;
   for (const auto* side : {&arguments.before, &arguments.after}) {
@@ -30,7 +30,7 @@ void require_different(const steps::CompareRequest& arguments) {
   }
 }
 
-/// For a person: the two means and the tests, one a line.
+/// Prints the two means and the tests for a person, one per line.
 void print_tests(const steps::CutComparison& found) {
   const auto mean = [&](const SampleMoments PooledTests::*side) {
     return found.points ? fmt::format("{:.3f} mm", ((*found.points).*side).mean) : std::string("-");

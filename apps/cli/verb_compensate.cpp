@@ -19,7 +19,7 @@ struct CompensateOptions {
   double max_probability = ScenarioRequest{}.max_probability;
 };
 
-/// --robust and what it needs go together.
+/// Requires that --robust and its options are given together.
 void require_robust_options(const CompensateOptions& chosen) {
   const bool has_calibration = !chosen.calibrated.calibration.empty();
   if (chosen.is_robust && !has_calibration) {
@@ -32,7 +32,7 @@ void require_robust_options(const CompensateOptions& chosen) {
   }
 }
 
-/// A path that follows from photographs of other cuts alone, without any simulated one.
+/// Computes a path from photographs of other cuts alone, without a simulated cut.
 int shift_without_simulation(const CompensateOptions& chosen, const CommonOptions& options) {
   const steps::CaseRequest request = case_request(chosen.case_path, Stage::Compensate, options, chosen.cut);
   const CompensationMethod method = request.file.settings.compensation.method;

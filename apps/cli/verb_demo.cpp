@@ -12,7 +12,7 @@
 namespace incise::cli {
 namespace {
 
-/// The virtual specimen of this seed, made unless a complete one is there.
+/// Returns the virtual specimen of this seed, making it unless a complete one exists.
 std::filesystem::path specimen_for(const std::filesystem::path& folder, const CommonOptions& options) {
   const std::filesystem::path truth = folder / "truth.json";
   if (!std::filesystem::exists(truth)) {

@@ -35,7 +35,7 @@ void add_scale_options(CLI::App& verb, steps::ScaleRequest& options, std::string
   verb.add_option("--rectangle-mm", options.rectangle_mm, "Its width and height")->expected(2);
 }
 
-/// What the options say, as the library has it.
+/// Returns the options as a request of the library.
 steps::EvaluateRequest request_of(const EvaluateArguments& arguments) {
   steps::EvaluateRequest request = arguments.request;
   if (!arguments.contour.empty()) request.contour = value_named<ContourKind>(arguments.contour);

@@ -16,7 +16,7 @@
 namespace incise::cli {
 namespace {
 
-/// Whether they name one folder, which may not be there yet, however they are spelt.
+/// Whether two names, however they are spelt, are of one folder, which need not exist.
 bool is_same_folder(const std::filesystem::path& a, const std::filesystem::path& b) {
   const auto plain = [](const std::filesystem::path& path) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path) / "").lexically_normal() / "";

@@ -28,7 +28,7 @@ struct ExportArguments {
   std::vector<double> tcp, near_deg;
 };
 
-/// What the options say, as the library has it.
+/// Returns the options as a request of the library.
 steps::ExportRequest request_of(const ExportArguments& arguments) {
   steps::ExportRequest request = arguments.request;
   if (!arguments.case_file.empty()) steps::take_case(read_case(arguments.case_file), request);

@@ -6,10 +6,10 @@
 
 namespace incise::cli {
 
-/// What a verb does, in the one line that `incise --help` gives it. @throws InvalidArgument for a verb without one.
+/// Returns what a verb does, as the one line in `incise --help`. @throws InvalidArgument for a verb without one.
 [[nodiscard]] std::string line_of(const std::string& verb);
 
-/// Lists the application's verbs in groups, those that one begins with first, one line each.
+/// Lists the application's verbs in groups, one line each; the verbs to begin with come first.
 class VerbList : public CLI::Formatter {
  public:
   VerbList() { label("SUBCOMMAND", "VERB"); }

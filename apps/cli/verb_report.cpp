@@ -27,7 +27,7 @@ void add_report(Application& application) {
         refuse_input_as_output("-o", output, {arguments.registration, arguments.replay});
         require_own_page(output);
         ReportData data;
-        std::optional<FolderLock> lock;  // a run that goes on in that folder would mix older and newer results
+        std::optional<FolderLock> lock;  // another run in that folder would mix older and newer results
         if (is_of_a_study) {
           if (std::filesystem::is_directory(arguments.folder)) lock.emplace(arguments.folder);
           data = steps::run_report(arguments.folder, console);

@@ -14,7 +14,7 @@ int run_stage(Stage stage, const std::filesystem::path& case_path, const CommonO
   });
 }
 
-/// A verb that runs the study up to a stage that cuts nothing.
+/// Adds a verb that runs the loop up to a stage that cuts nothing.
 void add_stage(Application& application, const char* name, const char* what, const char* example, Stage stage) {
   auto case_path = std::make_shared<std::filesystem::path>();
   CLI::App* verb = application.add_verb(
@@ -22,7 +22,7 @@ void add_stage(Application& application, const char* name, const char* what, con
   verb->add_option("case", *case_path, kCaseHelp)->required();
 }
 
-/// A verb that runs the study up to a stage that cuts.
+/// Adds a verb that runs the loop up to a stage that cuts.
 void add_cutting_stage(Application& application, const char* name, const char* what, const char* example, Stage stage) {
   auto case_path = std::make_shared<std::filesystem::path>();
   auto cut = std::make_shared<CutOptions>();

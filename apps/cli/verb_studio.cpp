@@ -15,10 +15,11 @@ struct StudioArguments {
   std::filesystem::path case_path;
   std::vector<std::filesystem::path> roots;
   unsigned short port = 0;
-  std::filesystem::path worker;  ///< not for people: this process computes for a studio
+  std::filesystem::path worker;  ///< internal: this process computes for a studio
 };
 
-/// The case file, and as its first root the folder that the command was started in, or that of a case outside it.
+/// Returns the settings with the case file and, as first root, the folder in which the command was started, or the
+/// folder of a case outside it.
 studio::ServerSettings server_settings(const StudioArguments& arguments) {
   studio::ServerSettings settings;
   settings.port = arguments.port;

@@ -20,7 +20,7 @@ struct TrackArguments : steps::TrackRequest {
   std::string mark_name = "green";
   std::string edge_name = "middle";
   std::string axis = "approach";
-  std::vector<const CLI::Option*> of_mark;  ///< that mean nothing without one
+  std::vector<const CLI::Option*> of_mark;  ///< options without a meaning if there is no mark
 };
 
 int run(const TrackArguments& arguments, const CommonOptions& options) {

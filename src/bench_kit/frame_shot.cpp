@@ -13,15 +13,15 @@ namespace {
 
 constexpr std::uint64_t kNoiseStream = 0x165667b1ULL;
 constexpr double kMarkMm = 1.0;          // width of the felt pen's line
-constexpr double kGrazingCosine = 0.25;  // flatter than this the sensor sees nothing
-constexpr double kSlowNoiseShare = 0.5;  // of the depth noise that changes slowly over the picture
+constexpr double kGrazingCosine = 0.25;  // of a ray to the surface's normal; below it the sensor sees nothing
+constexpr double kSlowNoiseShare = 0.5;  // share of the depth noise that varies slowly over the picture
 constexpr double kColorNoise = 3.0;
 constexpr int kCloudStride = 3;  // every third pixel of the depth picture becomes a point
 
-/// What each pixel of a pinhole sees: perspective depth buffer.
+/// The surface that each pixel of a pinhole camera sees: a perspective depth buffer.
 struct View {
   std::vector<double> depth_mm;        // along the optical axis; infinite: nothing
-  std::vector<std::int32_t> triangle;  // of the skin; -1: none
+  std::vector<std::int32_t> triangle;  // of the surface; -1: none
 };
 
 Vec2 pixel_of(const Pinhole& camera, const Vec3& p) {
@@ -34,7 +34,7 @@ std::size_t place(const Pinhole& camera, int u, int v) {
   return static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(u);
 }
 
-/// Depth at which the pixel's ray meets the triangle's plane.
+/// Returns the depth at which a pixel's ray meets the triangle's plane, mm.
 double depth_on(const std::array<Vec3, 3>& corners, const Vec3& ray) {
   const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   return normal.dot(corners[0]) / normal.dot(ray);
@@ -77,7 +77,7 @@ View look(const Pinhole& camera, const std::vector<Triangle>& skin, const Points
   return view;
 }
 
-/// Patches without a reading, until their share of the specimen is reached.
+/// Draws patches without a reading until they cover `percent` of the specimen.
 std::vector<std::uint8_t> holes(const Pinhole& camera, const View& view, double percent, Random& random) {
   std::vector<std::uint8_t> is_hole(view.depth_mm.size(), 0);
   std::vector<std::size_t> seen;

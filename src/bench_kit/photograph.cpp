@@ -15,13 +15,13 @@
 namespace incise {
 namespace {
 
-constexpr double kVisibleHeatMm = 1.0;  // the electrode's diameter: heat that reaches farther is seen
+constexpr double kVisibleHeatMm = 1.0;  // the electrode's diameter: only heat that reaches farther is visible
 constexpr double kNeedleMm = 0.5;
 constexpr double kWallMm = 1.2;        // from the rim of the kerf to where it is darkest
-constexpr double kCoarsePixels = 4.0;  // distances from the rim are taken on a grid this much coarser
-constexpr int kRays = 720;             // in which an open kerf's inner edge is looked for
-constexpr double kMostJumpMm = 1.2;    // between neighbouring rays along one piece of it
-constexpr double kCharMm = 0.5;        // beside the rim
+constexpr double kCoarsePixels = 4.0;  // distances from the rim are computed on a grid coarser by this factor
+constexpr int kRays = 720;             // along which an open kerf's inner edge is searched
+constexpr double kMostJumpMm = 1.2;    // between neighbouring rays, within one piece of that edge
+constexpr double kCharMm = 0.5;        // width of the char beside the rim
 constexpr double kRulerMm = 40.0;
 constexpr double kTickMm = 0.25;  // width of a tick
 
@@ -31,13 +31,13 @@ Points flat(const Contour& contour, const ViewFrame& view) {
   return points;
 }
 
-/// Rows of a picture run down, those of a grid up.
+/// Returns a place of the grid's plane in pixels of the picture: rows run down in a picture, up in a grid.
 Vec2 to_picture(const RasterGrid& grid, const Vec2& p) {
   const Vec2 index = grid.index_of(p);
   return {index.x(), grid.height - 1 - index.y()};
 }
 
-/// Pieces of the kerf's inner edge where it is no closed curve: the first cut pixel on rays from the tumour's middle.
+/// Returns the pieces of an open kerf's inner edge: the first cut pixels on rays from the tumour's middle.
 std::vector<std::vector<Vec2>> open_inner_edge(const Raster& kerf, const Vec2& middle) {
   const double longest = kerf.pixel_mm * std::hypot(kerf.width, kerf.height);
   std::vector<std::vector<Vec2>> pieces(1);
@@ -105,7 +105,7 @@ class Painter {
     return coarse;
   }
 
-  /// Cut within the specimen's outline: not skin, whether a wall or the ground is seen.
+  /// Returns the pixels of the kerf: those that show tissue but not skin, whether a wall or the bottom of the kerf.
   [[nodiscard]] Raster kerf(const RasterGrid& grid) const {
     Raster raster(grid, 0);
     for (int j = 0; j < grid.height; ++j) {
@@ -143,7 +143,7 @@ class Painter {
           put(pixel(i, j), kTissuePaint * (grain_.at(rest) * light) + 2.5 * noise);
           continue;
         }
-        // Walls of cut muscle, darker the farther from the rim: flat facets of tets are no sight of tissue.
+        // Walls of cut muscle, darker farther from the rim. Real tissue shows no flat facets of tets.
         const Vec2 place = grid_.centre(i, j);
         const double depth = std::clamp(sample(within, place) / kWallMm, 0.0, 1.0);
         const double grain = grain_.at(2.0 * Vec3(place.x(), place.y(), 0.0));
@@ -152,7 +152,7 @@ class Painter {
     }
   }
 
-  /// Tissue beside the kerf that was heated past denaturation, where that is farther than the eye takes for granted.
+  /// Paints the skin beside the kerf that heat has denatured, if the heat reached farther than kVisibleHeatMm.
   void cooked_rim() {
     if (marked_.thermal_width_mm <= kVisibleHeatMm) return;
     const ScalarRaster away = distance_to(kerf(coarse_grid()), 1);
@@ -167,7 +167,7 @@ class Painter {
     }
   }
 
-  /// Char along the kerf's rim, blood that has run out of it, and lamps that tissue mirrors.
+  /// Paints char along the kerf's rim, blood that has run out of it, and reflections of lamps on the tissue.
   void stain() {
     Random random(marked_.seed ^ 0x2c1b3c6dULL);
     const SmoothField blood(5.0, random), glare(2.2, random);
@@ -210,7 +210,7 @@ class Painter {
       }
   }
 
-  /// A white steel rule along the lower rim: ticks every millimetre, longer ones every five.
+  /// Draws a white steel rule along the picture's lower border: ticks every millimetre, longer ones every five.
   void ruler() {
     const double px = 1.0 / grid_.pixel_mm;
     const double length = std::min(kRulerMm, std::floor(0.9 * grid_.width / px - 2.0));

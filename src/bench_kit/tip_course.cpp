@@ -86,7 +86,7 @@ std::optional<std::string> find_misfit(const TriMesh& skin, const Contour& tumor
   std::size_t in_tissue = 0;
   double farthest_mm = 0.0;
   for (std::size_t i = 1; i < course.size(); ++i) {
-    // The plunge begins above the tissue: poses count from the first that the tip reaches sideways.
+    // The plunge begins above the tissue, so only poses that the tip reaches sideways count.
     const Vec3 way = course[i].tip_mm - course[i - 1].tip_mm;
     if (!course[i].is_cutting || !(way.cross(course[i].axis).norm() > 0.5 * way.norm())) continue;
     tips.points.push_back(course[i].tip_mm);

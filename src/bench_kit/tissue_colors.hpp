@@ -11,7 +11,7 @@
 
 namespace incise {
 
-/// Linear mixture of paints, 0 to 255 a channel.
+/// A colour that is mixed linearly, 0 to 255 a channel.
 using Paint = Vec3;
 inline const Paint kTissuePaint(196.0, 138.0, 130.0);
 inline const Paint kWallPaint(70.0, 40.0, 38.0);  // cut muscle, in the shadow of the kerf
@@ -24,7 +24,7 @@ inline const Paint kRedInk(208.0, 22.0, 30.0);
 inline const Paint kGreenInk(26.0, 158.0, 62.0);
 inline const Paint kTablePaint(70.0, 96.0, 122.0);  // a blue drape
 
-/// The grain of tissue: how light a place at rest is, about 1.
+/// The grain of tissue: lightness at a place, mm; mean 1.
 class TissueGrain {
  public:
   explicit TissueGrain(std::uint64_t seed)
@@ -47,7 +47,7 @@ inline std::uint8_t* pixel_at(ColorPicture& picture, int u, int v) {
 inline void put(std::uint8_t* pixel, const Paint& paint) {
   for (int c = 0; c < 3; ++c) pixel[c] = channel(paint[c]);
 }
-/// Lays ink over a pixel: `cover` in [0, 1]; the grain beneath shows a little.
+/// Lays ink over a pixel. @param cover  in [0, 1]; even at 1 the grain beneath shows a little.
 inline void lay(std::uint8_t* pixel, const Paint& ink, double cover) {
   for (int c = 0; c < 3; ++c) pixel[c] = channel((1.0 - cover) * pixel[c] + cover * (0.92 * ink[c] + 0.08 * pixel[c]));
 }

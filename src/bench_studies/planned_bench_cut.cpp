@@ -6,9 +6,9 @@
 namespace incise {
 namespace {
 
-/// Cuts along a path in the specimen's frame, as its arm would.
+/// Cuts along a path in the specimen's frame, as the specimen's arm would.
 BenchCut cut_along(const BenchBody& body, ToolPath path, const PlanSettings& plan, Workers& workers, Monitor& monitor) {
-  path.frame = PathFrame::Robot;  // the robot's base is taken to be the specimen's frame: program poses need no other
+  path.frame = PathFrame::Robot;  // the robot's base frame is taken as the specimen's frame
   ProgramSettings settings;
   settings.plunge_speed_mm_s = plan.speed_mm_s;
   const RobotProgram program = make_program(path, settings);
@@ -16,7 +16,7 @@ BenchCut cut_along(const BenchBody& body, ToolPath path, const PlanSettings& pla
   return cut_specimen(body, course, plan.power_w, workers, monitor);
 }
 
-/// Points of a contour that are evenly spaced where it is seen flat along the approach, as true_errors_mm has them.
+/// Returns points of a contour that are evenly spaced in the flat picture along the approach, as in true_errors_mm.
 Points places_seen_even(const Contour& contour, std::size_t count, const Vec3& approach) {
   Contour flat = contour;
   for (Vec3& p : flat.points) p -= p.dot(approach) * approach;
@@ -30,7 +30,7 @@ Points places_seen_even(const Contour& contour, std::size_t count, const Vec3& a
   return places;
 }
 
-/// The same specimen in the hands of an arm that does not err.
+/// Returns the same specimen with an arm without errors.
 BenchBody with_true_arm(BenchBody body) {
   Specimen& specimen = body.specimen;
   for (double Specimen::*error : {&Specimen::robot_offset_x_mm, &Specimen::robot_offset_y_mm,
@@ -58,7 +58,7 @@ KnownPhysicsCut cut_knowing_physics(const BenchBody& body, const PlanSettings& p
     PathErrors errors;
     errors.signed_error_mm = true_errors_mm(known, cut, kInnerEdgeTargetMm);
     errors.places = places_seen_even(*cut.inner_edge, errors.signed_error_mm.size(), known.approach);
-    errors.lag_mm = cut.shove_mm;  // what the bench knows of how far tissue is dragged along, on average
+    errors.lag_mm = cut.shove_mm;  // mean distance that tissue is dragged along, known to the bench
     errors.is_success = cut.outcome == Outcome::Success;
     return errors;
   };

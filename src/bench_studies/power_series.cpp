@@ -15,7 +15,7 @@
 namespace incise {
 namespace {
 
-/// The body of one specimen: made by the first cut that asks for it, let go after the last.
+/// Body of one specimen: made by the first cut that needs it, released after the last.
 class SharedBody {
  public:
   void expect_one_more() { ++expected_; }
@@ -37,7 +37,7 @@ class SharedBody {
   std::size_t expected_ = 0;
 };
 
-/// One cut that is not there yet.
+/// One cut that is not in the cache.
 struct MissingCut {
   std::size_t subject, place;
 };
@@ -82,7 +82,7 @@ class PowerSeriesRunner {
     return cut;
   }
 
-  /// @param cuts  as many for each subject, subject by subject.
+  /// @param cuts  equally many for each subject, subject by subject.
   void make_all(std::vector<PowerCut>& cuts, const char* what) {
     const std::size_t each = cuts.size() / subjects_.size();
     std::vector<MissingCut> missing;
@@ -92,7 +92,7 @@ class PowerSeriesRunner {
       const CacheKey key = key_of(subjects_[s], cuts[i]);
       if (auto kept = kept_.find<PowerCut>(slot_of(key), key, monitor_)) {
         cuts[i] = std::move(*kept);
-        cuts[i].specimen = subjects_[s].name;  // a specimen's name is no part of its key
+        cuts[i].specimen = subjects_[s].name;  // a specimen's name is not part of its key
         continue;
       }
       missing.push_back({s, i});
@@ -114,7 +114,7 @@ class PowerSeriesRunner {
       PowerCut& cut = cuts[missing[i].place];
       try {
         make(subjects_[missing[i].subject], bodies[missing[i].subject], own, cut);
-      } catch (const Cancelled&) {  // told once all have stopped
+      } catch (const Cancelled&) {  // reported once all have stopped
         return;
       }
       progress.note(i, 1.0);
@@ -132,7 +132,7 @@ class PowerSeriesRunner {
 
   void make(const PowerSubject& subject, SharedBody& shared, Monitor& monitor, PowerCut& cut) const {
     throw_if_cancelled(monitor, "cutting");
-    StopOnly silent(monitor);  // progress is that of the cut
+    StopOnly silent(monitor);  // only the cut reports progress
     const auto body = shared.take(subject.specimen, request_.resolution, silent);
     if (body->outcome == Outcome::NotConverged) {
       cut.problem = "the specimen could not be stretched";
@@ -149,7 +149,7 @@ class PowerSeriesRunner {
     }
   }
 
-  /// Of a cut that did not come to rest nothing can be measured.
+  /// Records the measures of a cut. A cut that did not converge has none.
   static void note(const BenchBody& body, const BenchCut& seen, PowerCut& cut) {
     cut.outcome = seen.outcome;
     if (seen.outcome == Outcome::NotConverged) return;

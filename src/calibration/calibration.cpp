@@ -14,7 +14,7 @@ namespace {
 constexpr double kWeightTolerance = 1e-6;
 constexpr Range kForceN{1e-6, 1e6};
 
-/// What a row says of one specimen.
+/// Figures of one specimen in a row.
 struct RunFigures {
   const std::string& name;
   const CalibrationRun& run;
@@ -38,7 +38,7 @@ void describe(Visitor& v, RunFigures& f) {
   v.derived("wall_s", f.run.wall_s, "Time that the simulation took.");
 }
 
-/// A row of the table, its specimens one by one.
+/// A row of the table, specimen by specimen.
 struct RowFigures {
   const Calibration& calibration;
   const ScoreRow& row;
@@ -84,7 +84,7 @@ void describe_parameters(Visitor& v, DragFit& fit, Identifiability& told) {
   v.derived("correlation", fit.correlation, "Of the three, in this order.");
 }
 
-/// A reader needs the samples, the residual and, for what photographs say of the next ring, the fitted errors.
+/// A reader needs the samples, the residual and, to forecast the next ring, the fitted errors.
 void describe_fit(Visitor& v, DragFit& fit, Identifiability& told) {
   v.begin({"posterior"});
   if (!v.sets()) describe_parameters(v, fit, told);
@@ -103,7 +103,7 @@ void describe_fit(Visitor& v, DragFit& fit, Identifiability& told) {
   v.derived("photographed_profile", photographed_profile(fit.specimens), "What photographs alone say of the next cut.");
   v.derived("residual_profile", residual_profile(fit), "What they say beyond the simulation and its bias.");
 }
-/// A reader's fitted specimens are those of the calibration, with errors that a photograph can have.
+/// The fitted specimens of a file must be those of the calibration, with errors that a photograph can have.
 void require_fitted_specimens(const Visitor& v, const Calibration& calibration) {
   const std::vector<SpecimenFit>& fitted = calibration.fit->specimens;
   if (fitted.empty()) return;

@@ -18,20 +18,20 @@ constexpr std::size_t kDragSteps = 41;
 constexpr std::size_t kStiffnessSteps = 15;
 constexpr double kStiffnessReach = 2.5;  // standard deviations of the prior
 
-// The residual's parameters that are integrated over; each list is about even in its logarithm, so equal weights are
-// Jeffreys' prior of a scale, cut off where nothing plausible is left.
+// The residual's parameters are integrated over. Each list is about even in its logarithm, so equal weights are
+// Jeffreys' prior of a scale, cut off beyond plausible values.
 constexpr std::array kResidualSdMm{0.1, 0.14, 0.2, 0.28, 0.4, 0.56, 0.8};
 constexpr std::array kCorrelationDeg{10.0, 25.0, 60.0, 120.0};
-/// From sector to sector without any correlation: reading of the photograph, grain of the mesh; times the least one.
+/// Uncorrelated from sector to sector: reading of the photograph, grain of the mesh; in multiples of the least one.
 constexpr std::array kReadingTimes{1.0, 2.0, 3.5};
-/// From specimen to specimen; weights are those of a half normal, for two or three specimens hardly tell.
+/// From specimen to specimen; half-normal weights, because two or three specimens hardly determine it.
 constexpr std::array kSpreadMm{0.05, 0.15, 0.3, 0.5};
 constexpr double kSpreadPriorMm = 0.25;
-/// Of the shift of a cut as a whole; weights are those of a half normal.
+/// Of the shift of a whole cut; half-normal weights.
 constexpr std::array kPlacementMm{0.1, 0.3, 0.6};
 constexpr double kPlacementPriorMm = 0.4;
 
-/// Photographed less simulated, and the slope by stiffness, both as spectra: one pair for each drag length.
+/// Spectra of photographed minus simulated errors, and of the slope by stiffness, one pair for each drag length.
 struct SpecimenSpectra {
   std::vector<std::vector<double>> rest;
   std::vector<std::vector<double>> slope;
@@ -46,7 +46,7 @@ struct WaveSums {
   double variance_0 = 0.0;  ///< of the wave of order 0, without what differs from specimen to specimen
 };
 
-/// What the specimens together say at one place of the grid: ½-logarithm terms and the normal equation of the bias.
+/// Sums over the specimens at one cell of the grid: terms of −2 ln(mass), and the normal equation of the bias.
 struct BiasEquation {
   double log_determinant = 0.0;
   double squares = 0.0;
@@ -71,8 +71,8 @@ std::vector<double> evenly(double from, double to, std::size_t count) {
 SpecimenSpectra spectra_of(const FitSpecimen& specimen, const std::vector<double>& drag_lengths) {
   SpecimenSpectra spectra;
   spectra.own_variance = specimen.own_stiffness_sd * specimen.own_stiffness_sd;
-  // The simulation says nothing about the fast waves but its grain: there the photograph stands alone, and tells how
-  // rough what differs is.
+  // In the fast waves the simulation shows only its grain. Only the photograph counts there, and shows how rough the
+  // difference is.
   const std::vector<double> observed = ring_spectrum(specimen.signed_error_mm);
   for (const double drag : drag_lengths) {
     std::vector<double> rest = observed;
@@ -83,8 +83,8 @@ SpecimenSpectra spectra_of(const FitSpecimen& specimen, const std::vector<double
     std::fill(slope.begin() + static_cast<std::ptrdiff_t>(slow), slope.end(), 0.0);
     spectra.rest.push_back(std::move(rest));
     spectra.slope.push_back(std::move(slope));
-    // Without its own variance in the middle between two knots, where the grain of both averages out, the fit would be
-    // drawn to just these places.
+    // Midway between two knots the grain of both averages out. With one variance everywhere, the fit would be drawn to
+    // these places.
     spectra.grain_variance.push_back(std::pow(specimen.response.grain_mm(), 2) * specimen.response.grain_share(drag));
   }
   return spectra;
@@ -104,8 +104,8 @@ WaveSums wave_sums(const std::vector<double>& rest, const std::vector<double>& s
   return sums;
 }
 
-/// Adds one specimen. Its covariance is diagonal in the spectrum but for the rank-one part of its own stiffness, which
-/// the formula of Sherman and Morrison takes in.
+/// Adds one specimen. Its covariance is diagonal in the spectrum except for the rank-one part of its own stiffness,
+/// which the Sherman–Morrison formula includes.
 void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, double slope_0, double spread_mm,
                   double ln_stiffness, double own_variance, double sectors) {
   const double variance_0 = waves.variance_0 + sectors * spread_mm * spread_mm;
@@ -123,8 +123,8 @@ void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, doubl
   sum.pull += ur - share * ug * rg;
 }
 
-/// Collects the grid, one choice of the residual's parameters after the other. Masses are kept relative to the greatest
-/// that was met so far, which keeps their exponentials in range.
+/// Collects the grid, one choice of the residual's parameters after the other. Masses are relative to the greatest so
+/// far, which keeps their exponentials in range.
 class GridSum {
  public:
   GridSum(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings, DragPosterior& posterior)
@@ -133,7 +133,7 @@ class GridSum {
     posterior_.cells.assign(posterior.drag_lengths_mm.size() * posterior.ln_stiffness.size(), {});
   }
 
-  /// @param choice  its spread is not looked at: all are added.
+  /// @param choice  its spread is ignored: all spreads are added.
   void add(ResidualChoice choice) {
     std::vector<double> variances = ring_eigenvalues(sectors_, choice.correlation_deg);
     choice.correlation_0 = variances[0];
@@ -190,7 +190,7 @@ class GridSum {
     }
   }
 
-  /// Mass relative to the reference, which moves up when it is left far below.
+  /// Returns the mass relative to the reference, which is raised if the mass lies far above it.
   double relative(double log_mass) {
     constexpr double kFar = 30.0;
     if (log_mass > reference_ + kFar) {

@@ -6,17 +6,18 @@
 
 namespace incise {
 
-/// One place of the grid of drag length and ln(stiffness factor), the rest integrated over. Given it, the bias is taken
-/// for normal with the mean and variance of the mixture over the residual's parameters.
+/// One cell of the grid of drag length and ln(stiffness factor); all other parameters are integrated over. Within a
+/// cell, the bias is taken as normal, with the mean and variance of its mixture over the residual's parameters.
 struct PosteriorCell {
-  double mass = 0.0;  ///< all together 1
+  double mass = 0.0;  ///< the masses of all cells add up to 1
   double bias_mean_mm = 0.0;
   double bias_variance_mm2 = 0.0;
 };
 
+/// Posterior on the grid.
 struct DragPosterior {
-  std::vector<double> drag_lengths_mm;  ///< even, ends included
-  std::vector<double> ln_stiffness;     ///< even, symmetric about 0; 0 alone where stiffness was not varied
+  std::vector<double> drag_lengths_mm;  ///< evenly spaced, ends included
+  std::vector<double> ln_stiffness;     ///< evenly spaced, symmetric about 0; only 0 if stiffness was not varied
   std::vector<PosteriorCell> cells;     ///< drag length by drag length
   ResidualEstimate residual;            ///< posterior means
   bool knows_stiffness = false;
@@ -25,11 +26,12 @@ struct DragPosterior {
   }
 };
 
-/// @pre specimens with equally many sectors, valid settings.
+/// Computes the posterior on the grid. @pre specimens with equally many sectors, valid settings. @throws
+/// InvalidArgument if the specimens' ranges of drag length do not overlap.
 [[nodiscard]] DragPosterior posterior_on_grid(const std::vector<FitSpecimen>& specimens,
                                               const DragFitSettings& settings);
 
-/// Means, deviations, intervals, correlations and samples.
+/// Summarises the posterior: means, deviations, intervals, correlations and samples.
 [[nodiscard]] DragFit summary_of(const DragPosterior& posterior, const DragFitSettings& settings);
 
 }  // namespace incise

@@ -24,8 +24,8 @@ void require_profiles(const std::vector<SimulatedProfile>& profiles) {
   }
 }
 
-/// Root mean square of the entries of all spectra that are too fast for tissue, up to twice the order that is not:
-/// grain is stronger in slow waves than in the fastest, and it is that of the slow ones that is asked for.
+/// Root mean square of the entries of all spectra above the order of tissue, up to twice that order: the grain of slow
+/// waves is needed, and grain is stronger there than in the fastest waves.
 double fast_waves_rms(const std::vector<SimulatedProfile>& knots) {
   double squares = 0.0;
   double count = 0.0;
@@ -37,7 +37,7 @@ double fast_waves_rms(const std::vector<SimulatedProfile>& knots) {
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
-/// Straight line between neighbours; beyond the ends the end itself.
+/// Linear between neighbours; constant beyond the ends.
 std::vector<double> between(const std::vector<SimulatedProfile>& knots, double drag_length_mm) {
   const auto above = std::find_if(knots.begin(), knots.end(), [drag_length_mm](const SimulatedProfile& knot) {
     return knot.drag_length_mm >= drag_length_mm;

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kBiasSteps = 81;
 constexpr double kBiasReach = 4.0;  // standard deviations about the mean
 
-/// The place below which a standard normal number lies with that probability; by bisection, which needs no table.
+/// Quantile of the standard normal distribution, by bisection.
 double normal_place(double probability) {
   double low = -10.0;
   double high = 10.0;
@@ -22,8 +22,8 @@ double normal_place(double probability) {
   return 0.5 * (low + high);
 }
 
-/// The place of an even grid below which `probability` of the mass lies; a cell's mass is spread evenly over its width,
-/// which for the first and last cell ends at the grid.
+/// Quantile of masses on an even grid. A cell's mass is spread evenly over its width, which ends at the grid for the
+/// first and last cell.
 double place_of(const std::vector<double>& grid, const std::vector<double>& mass, double probability) {
   if (grid.size() == 1) return grid.front();
   const double half = 0.5 * (grid[1] - grid[0]);
@@ -56,7 +56,7 @@ ParameterEstimate estimate_of(const std::vector<double>& grid, const std::vector
   return estimate;
 }
 
-/// Share of the bias' mixture that lies below a value.
+/// Fraction of the bias' mixture below a value.
 double bias_below(const DragPosterior& posterior, double value) {
   double sum = 0.0;
   for (const PosteriorCell& cell : posterior.cells) {
@@ -120,7 +120,7 @@ Mat3 correlation_of(const DragPosterior& posterior, const DragFit& fit) {
   return correlation;
 }
 
-/// The n-th of a sequence that fills (0, 1) evenly, whatever its length (van der Corput).
+/// Returns the n-th number of a sequence that fills (0, 1) evenly, whatever its length (van der Corput).
 double evenly_filling(std::size_t n) {
   double value = 0.0;
   double digit = 0.5;
@@ -128,7 +128,8 @@ double evenly_filling(std::size_t n) {
   return value;
 }
 
-/// Cells at even steps of the cumulated mass, each with a bias from its normal: as good as far more random draws.
+/// Samples cells at even steps of the cumulated mass, each with a bias from its normal: as good as many more random
+/// draws.
 std::vector<PosteriorSample> samples_of(const DragPosterior& posterior, std::size_t count) {
   std::vector<PosteriorSample> samples;
   const double weight = 1.0 / static_cast<double>(count);

@@ -17,7 +17,7 @@ Identified told_by(double share) {
   return share <= kApartShare ? Identified::Apart : share <= kNotShare ? Identified::Partly : Identified::Not;
 }
 
-/// The parameter that goes with this one; −1: none.
+/// Returns the other parameter with the strongest correlation of at least kTied in magnitude; −1: none.
 int partner_of(const Mat3& correlation, int parameter) {
   int partner = -1;
   for (int other = 0; other < 3; ++other) {

@@ -18,7 +18,7 @@ double one_speed(const TimedCut& cut, std::size_t number) {
   return cut.length_mm / cut.time_s;
 }
 
-/// A speed that a person would set.
+/// Rounds to a speed that a person would set.
 double rounded_speed(double speed_mm_s) {
   const double digit = speed_mm_s >= 1.0 ? 1.0 : std::pow(10.0, std::floor(std::log10(speed_mm_s)));
   return std::round(speed_mm_s / digit) * digit;

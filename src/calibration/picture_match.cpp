@@ -15,7 +15,7 @@ constexpr double kCoarseStepDeg = 2.0;
 constexpr double kFineStepDeg = 0.1;
 constexpr double kBetterBy = 2.0;  // a mirror image or a far turn has to fit this much better
 
-/// An edge about its own middle, in the view along the approach.
+/// Returns an edge about its own centroid, in the view along the approach. @param middle  is set to that centroid.
 Contour centred_in_view(const Contour& edge, const Vec3& approach, Vec2& middle) {
   INCISE_REQUIRE(edge.is_closed && edge.points.size() >= 3,
                  fmt::format("expected a closed tumour edge of at least 3 points, found {}", edge.points.size()));
@@ -39,7 +39,7 @@ Contour turned(const Contour& edge, double degrees) {
   return result;
 }
 
-/// Root mean square of the distances both ways.
+/// Root mean square of the distances in both directions.
 double rms_between(const Contour& a, const Contour& b) {
   double squares = 0.0;
   for (const Vec3& p : a.points) squares += std::pow(nearest_on(b, p).distance_mm, 2);
@@ -52,7 +52,7 @@ struct Turn {
   double rms_mm = std::numeric_limits<double>::infinity();
 };
 
-/// The turn of least cost in a range. @param prior_weight  mm² per degree²
+/// Finds the turn of least cost in a range. @param prior_weight  mm² per degree²
 Turn best_turn(const Contour& photographed, const Contour& simulated, double from, double to, double step,
                double prior_weight) {
   Turn best;
@@ -87,7 +87,7 @@ PictureMatch match_picture(const Contour& photographed, const Vec3& photo_approa
   Vec2 to = Vec2::Zero();
   const Contour seen = centred_in_view(photographed, photo_approach, from);
   const Contour made = centred_in_view(simulated, approach, to);
-  // Distances along an edge of some 60 mm are worth about ten independent ones.
+  // The distances along an edge of some 60 mm are worth about ten independent ones.
   constexpr double kPlaces = 10.0;
   const double prior = std::pow(settings.edge_sd_mm / settings.turn_sd_deg, 2) / kPlaces;
   Turn best = best_turn(seen, made, -settings.most_turn_deg, settings.most_turn_deg, kCoarseStepDeg, prior);

@@ -54,7 +54,7 @@ std::map<double, CutsOfOnePower> by_power(std::span<const PowerCut> cuts) {
   return powers;
 }
 
-/// The greatest value and whose it is; what was not measured does not count.
+/// Returns the cut with the greatest value; cuts without it do not count. Null: no cut has it.
 const PowerCut* find_greatest(const CutsOfOnePower& cuts, std::optional<double> PowerCut::*value) {
   const PowerCut* greatest = nullptr;
   for (const PowerCut* cut : cuts) {

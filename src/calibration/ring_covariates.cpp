@@ -22,7 +22,7 @@ std::vector<std::size_t> outside_covariates(const RingCovariates& ring, std::spa
   const CovariateValues mine = values_of(ring);
   std::vector<std::size_t> outside;
   for (std::size_t k = 0; k < mine.size(); ++k) {
-    if (kRingCovariateNames[k] == "outline") continue;  // a regressor, but not of those that were fixed
+    if (kRingCovariateNames[k] == "outline") continue;  // a regressor, but not among those fixed in advance
     std::vector<double> sorted;
     for (const RingCovariates& other : others) sorted.push_back(values_of(other)[k]);
     std::sort(sorted.begin(), sorted.end());

@@ -17,13 +17,13 @@ namespace incise {
 
 using SlowWaves = Eigen::Matrix<double, static_cast<Eigen::Index>(kEntriesThatCount), 1>;
 
-/// One observation or the ring that is asked for, ready for the covariance.
+/// One observation, or the ring to forecast, ready for the covariance.
 struct RingPlace {
   double start_deg = 0.0;
   double pull_deg = 90.0;
-  CovariateValues steps{};                  ///< of its covariates, from their mean
-  double aside_steps = 0.0;                 ///< of its place across the pull, with its sign, from the body's middle
-  SlowWaves simulated = SlowWaves::Zero();  ///< slow ones, less the observations' mean
+  CovariateValues steps{};                  ///< its covariates minus their mean, in steps
+  double aside_steps = 0.0;                 ///< its signed place across the pull, from the body's middle, in steps
+  SlowWaves simulated = SlowWaves::Zero();  ///< slow waves of the simulated error, minus the observations' mean
 };
 
 namespace {
@@ -31,23 +31,23 @@ namespace {
 constexpr auto kWaves = static_cast<Eigen::Index>(kEntriesThatCount);
 using WaveMatrix = Eigen::Matrix<double, kWaves, kWaves>;
 
-/// Steps of the covariates that are worth telling apart: a quarter of a radius, a tenth of the body's length, half the
-/// modulus again …; in the order of kRingCovariateNames.
+/// Steps of the covariates that are worth distinguishing: a quarter of the radius, a tenth of the body's length, half
+/// of the modulus …; in the order of kRingCovariateNames.
 constexpr CovariateValues kSteps{0.25, 0.05, 0.1, 3.0, 0.5, 1.0, 1.0, 0.4};
 
 constexpr std::size_t kAlong = 2, kAside = 3, kModulus = 4;
 static_assert(kRingCovariateNames[kAlong] == "along" && kRingCovariateNames[kAside] == "aside" &&
               kRingCovariateNames[kModulus] == "youngs_modulus");
-/// As how many observations the priors of the spreads count. Chosen, as in distance_from.
+/// The priors of the spreads count as this many observations. Chosen, as in distance_from.
 constexpr std::size_t kPriorDegrees = 3;
-/// Of the mean error that all cuts have in common, mm: without a simulation it may be anything that a cut can err.
+/// Spread of the mean error common to all cuts, mm, without a simulation: anything that a cut can err.
 constexpr double kCommonAloneMm = 2.0;
 
-/// Half-normal scale of each spread below; the angles are log-normal about theirs.
+/// Scale of the half-normal prior of slopes; the other scales are in kEntries. Angles are log-normal about theirs.
 constexpr double kSlopePriorMm = 0.15;
 constexpr double kAngleSd = 0.5;
 
-/// The spreads as a list of logarithms for the search.
+/// The spreads as a list, for the search over their logarithms.
 struct SpreadEntry {
   double RingSpreads::*member;
   double prior;
@@ -66,7 +66,7 @@ auto& entry_of(auto& spreads, std::size_t k) {
 }
 constexpr std::size_t kSpreads = kEntries.size() + std::tuple_size_v<CovariateValues>;
 
-/// Of the prior of the spreads' logarithms, but for a constant.
+/// Log density of the prior of the spreads' logarithms, up to a constant.
 double log_prior(const RingSpreads& spreads) {
   double sum = 0.0;
   for (std::size_t k = 0; k < kSpreads; ++k) {
@@ -102,7 +102,7 @@ SlowWaves slow_eigenvalues(std::size_t sectors, double length_deg) {
   return slow;
 }
 
-/// Waves of f(θ − angle) from those of f(θ).
+/// Returns the matrix that maps the waves of f(θ) to those of f(θ − angle).
 WaveMatrix turned(double angle_deg) {
   WaveMatrix turn = WaveMatrix::Identity();
   for (Eigen::Index order = 1; 2 * order < kWaves; ++order) {
@@ -113,7 +113,7 @@ WaveMatrix turned(double angle_deg) {
   return turn;
 }
 
-/// Covariances between two cuts of all that they have in common, for given spreads.
+/// Covariances between two cuts of everything that they have in common, for given spreads.
 class CommonCovariance {
  public:
   CommonCovariance(const RingSpreads& spreads, std::size_t sectors)
@@ -143,7 +143,7 @@ class CommonCovariance {
   }
 
  private:
-  /// Covariance of shifts by so many steps in a direction, counter-clockwise from the pull.
+  /// Covariance of shifts in a direction, counter-clockwise from the pull, by the given steps.
   [[nodiscard]] Eigen::Matrix2d shift_between(double spread_mm, const RingPlace& a, double from_pull_deg,
                                               double a_steps, const RingPlace& b, double b_steps) const {
     const auto direction = [from_pull_deg](const RingPlace& place) {
@@ -158,7 +158,7 @@ class CommonCovariance {
   SlowWaves by_start_, in_view_;
 };
 
-/// Variance of each wave of what one cut has by itself.
+/// Variance of each wave of the part that belongs to one cut alone.
 SlowWaves own_variances(const RingSpreads& spreads, std::size_t sectors) {
   SlowWaves own = spreads.own_mm * spreads.own_mm * slow_eigenvalues(sectors, spreads.own_deg);
   const auto count = static_cast<double>(sectors);
@@ -179,10 +179,10 @@ Eigen::MatrixXd covariance_of(const std::vector<RingPlace>& places, const RingSp
           common.between(places[static_cast<std::size_t>(a)], places[static_cast<std::size_t>(b)]);
     covariance.block<kWaves, kWaves>(a * kWaves, a * kWaves).diagonal() += own;
   }
-  return covariance;  // its lower half
+  return covariance;  // only its lower half is set
 }
 
-/// Logarithm of the spreads' posterior density, but for a constant; minus infinity where the covariance is none.
+/// Log density of the spreads' posterior, up to a constant; minus infinity if the covariance is not positive definite.
 double log_posterior(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, const RingSpreads& spreads,
                      std::size_t sectors) {
   const Eigen::LLT<Eigen::MatrixXd> factor(covariance_of(places, spreads, sectors));
@@ -194,10 +194,10 @@ double log_posterior(const std::vector<RingPlace>& places, const Eigen::VectorXd
 
 struct FoundSpreads {
   RingSpreads spreads;
-  bool is_converged = false;  ///< no factor as small as the last one helps any more
+  bool is_converged = false;  ///< not even a factor as small as the last one improves any spread
 };
 
-/// One spread after the other is made greater or smaller by a factor; the factor shrinks when nothing helps.
+/// Pattern search: each spread in turn is multiplied or divided by a factor, which shrinks when nothing improves.
 FoundSpreads most_probable(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, RingSpreads spreads,
                            std::size_t sectors) {
   constexpr double kFirstFactor = 2.0, kLastFactor = 1.1;
@@ -265,7 +265,7 @@ struct RingForecaster::Posterior {
   std::vector<RingPlace> places;
   Eigen::LLT<Eigen::MatrixXd> factor;
   Eigen::VectorXd weights;  ///< covariance⁻¹ · (photographed − simulated)
-  double fast_mm = 0.12;    ///< of a sector: waves that are not forecast
+  double fast_mm = 0.12;    ///< rms, per sector, of the fast waves, which are not forecast
 
   [[nodiscard]] RingPlace place_of(const RingCovariates& ring) const {
     RingPlace place{.start_deg = ring.start_deg, .pull_deg = ring.pull_deg};
@@ -274,21 +274,21 @@ struct RingForecaster::Posterior {
     for (std::size_t k = 0; k < values.size(); ++k) place.steps[k] = (values[k] - mean[k]) / kSteps[k];
     return place;
   }
-  /// Expected difference of the simulated share from 1; 0 without observations.
+  /// Returns the expected simulated share minus 1; 0 without observations.
   [[nodiscard]] double share() const {
     double share = 0.0;
     for (std::size_t s = 0; s < places.size(); ++s)
       share += places[s].simulated.dot(weights.segment<kWaves>(static_cast<Eigen::Index>(s) * kWaves));
     return share * spreads.share * spreads.share;
   }
-  /// Covariances of a ring with all observations. @pre some.
+  /// Returns the covariances of a ring with all observations. @pre at least one.
   [[nodiscard]] Eigen::MatrixXd cross_to(const RingPlace& place, const CommonCovariance& common) const {
     Eigen::MatrixXd cross(kWaves, weights.size());
     for (std::size_t s = 0; s < places.size(); ++s)
       cross.middleCols<kWaves>(static_cast<Eigen::Index>(s) * kWaves) = common.between(place, places[s]);
     return cross;
   }
-  /// What is expected of one more photograph less its simulation, slow waves, and their covariance.
+  /// Slow waves expected of one more photograph minus its simulation, and their covariance.
   struct Expected {
     SlowWaves mean = SlowWaves::Zero();
     WaveMatrix covariance = WaveMatrix::Zero();
@@ -304,7 +304,7 @@ struct RingForecaster::Posterior {
     expected.covariance -= cross * factor.solve(cross.transpose());
     return expected;
   }
-  /// Covariance between sectors of slow waves and of the fast ones, which are not forecast.
+  /// Returns the covariance between sectors of the slow waves and of the fast ones, which are not forecast.
   [[nodiscard]] Eigen::MatrixXd between_sectors(const WaveMatrix& covariance, std::size_t count) const {
     const auto rows = static_cast<Eigen::Index>(count);
     Eigen::MatrixXd basis(rows, kWaves);
@@ -316,7 +316,7 @@ struct RingForecaster::Posterior {
     sectors_covariance.diagonal().array() += fast_mm * fast_mm;
     return sectors_covariance;
   }
-  /// Empty without observations.
+  /// Returns the names of the covariates outside the observations' range; empty without observations.
   [[nodiscard]] std::vector<std::string_view> unlike(const RingCovariates& ring) const {
     if (observations.empty()) return {};
     std::vector<RingCovariates> rings;
@@ -393,7 +393,7 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
   const Posterior& p = *posterior_;
   RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0, .share_sd = p.spreads.share};
   const std::size_t count = p.places.empty() ? sectors : p.sectors;
-  // Taken for an average simulated ring: what differs is said by the share.
+  // The ring is taken as an average simulated one: the share covers its difference.
   const Posterior::Expected expected = p.expect(p.place_of(ring), count);
   if (!p.places.empty()) {
     const double prior = p.spreads.share * p.spreads.share;

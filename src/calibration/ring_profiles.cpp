@@ -13,11 +13,11 @@
 namespace incise {
 namespace {
 
-// Both lists are about even in their logarithms, and so are the weights. The least amplitude stands for "nothing in
+// Both lists are about even in their logarithms, with equal weights. The least amplitude represents "nothing in
 // common".
 constexpr std::array kCommonAmplitudeMm{0.02, 0.04, 0.08, 0.16, 0.32, 0.64};
 constexpr std::array kCommonCorrelationDeg{25.0, 60.0, 120.0};
-/// Prior of simulated_share about 1: a simulation that says nothing of differences lies two of these away.
+/// Prior sd of simulated_share about 1: a simulation that says nothing of differences lies two of these away.
 constexpr double kShareSd = 0.5;
 
 /// Mean over specimens of `value(specimen, sector)`.
@@ -35,7 +35,7 @@ std::vector<double> mean_over_specimens(const std::vector<SpecimenFit>& specimen
   return mean;
 }
 
-/// Variance of each wave of a specimen's residual, what it has in common with the others included.
+/// Variance of each wave of a specimen's residual, including the part in common with the others.
 std::vector<double> total_variances(const ResidualEstimate& residual, std::size_t sectors) {
   std::vector<double> variances = ring_eigenvalues(sectors, residual.correlation_deg);
   const auto count = static_cast<double>(sectors);
@@ -50,8 +50,8 @@ std::vector<double> total_variances(const ResidualEstimate& residual, std::size_
 /// The specimens' photographed and simulated profiles, wave by wave.
 struct RingWaves {
   std::size_t specimens = 0;
-  std::vector<double> mean_rest;                     ///< of photographed less simulated
-  std::vector<double> seen_seen, seen_own, own_own;  ///< sums of products of what differs from the mean over specimens
+  std::vector<double> mean_rest;                     ///< of photographed minus simulated errors
+  std::vector<double> seen_seen, seen_own, own_own;  ///< sums of products of deviations from the mean over specimens
 };
 
 RingWaves waves_of(const std::vector<SpecimenFit>& specimens, const std::vector<double>& simulated) {
@@ -77,7 +77,7 @@ RingWaves waves_of(const std::vector<SpecimenFit>& specimens, const std::vector<
   return waves;
 }
 
-/// One amplitude and correlation of the common part, what follows from them, and how well the photographs agree.
+/// One amplitude and correlation of the common part, the estimates that follow, and how well the photographs agree.
 struct CommonPart {
   double amplitude_mm = 0.0, correlation_deg = 0.0;
   double share = 1.0, share_variance = 0.0;  ///< of simulated differences

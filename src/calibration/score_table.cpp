@@ -10,13 +10,13 @@
 namespace incise {
 namespace {
 
-/// Sums what the specimens that came out hold.
+/// Sums over the specimens that did not fail.
 struct RowSums {
   double mean = 0.0, sd = 0.0, greatest = 0.0, mean_signed = 0.0, inner = 0.0;
   double inner_abs = 0.0, inner_greatest = 0.0;
   double count = 0.0, inner_count = 0.0;
 
-  /// Whether its inner edge is in the sums, too.
+  /// Adds a run. Returns whether its inner edge is in the sums, too.
   bool add(const CalibrationRun& run) {
     if (run.is_failure() || !run.paper_abs_error_mm || !run.signed_error_mm) return false;
     count += 1.0;
@@ -33,7 +33,7 @@ struct RowSums {
   }
 };
 
-/// Of the inner edge, against the photographs of the specimens that have one. Absent: none has.
+/// Scores the inner edges against the photographs of the specimens that have one. Leaves the score absent if none has.
 void score_inner_edges(ScoreRow& row, const RowSums& sums, const std::vector<PhotographedErrors>& photographs) {
   row.inner_specimens = photographs.size();
   if (photographs.empty()) return;

@@ -12,7 +12,7 @@ std::size_t order_of(std::size_t entry) {
   return (entry + 1) / 2;
 }
 
-/// Value of the basis function of an entry at a place.
+/// Value of an entry's basis function at a sector.
 double basis(std::size_t entry, std::size_t place, std::size_t n) {
   const std::size_t order = order_of(entry);
   const auto count = static_cast<double>(n);

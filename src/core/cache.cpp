@@ -24,7 +24,7 @@ class MemoryEntries : public EntryStore {
   std::map<std::string, std::string> entries_;
 };
 
-/// What an entry begins with: the magic line, the key's digest and the payload's; the payload follows.
+/// Returns the beginning of an entry: the magic line, the key's digest and the payload's digest. The payload follows.
 std::string header_of(const CacheKey& key, std::string_view payload) {
   return fmt::format("{}{}\n{}\n", kCacheMagic, key.digest(), sha256_of_text(payload));
 }
@@ -37,7 +37,7 @@ CacheKey::CacheKey(std::string_view stage)
 
 CacheKey& CacheKey::add_text(std::string_view text) {
   parts_ += fmt::format("{} {}\n", text.size(),
-                        sha256_of_text(text));  // the size and the hash: parts cannot run into each other
+                        sha256_of_text(text));  // with the size, parts cannot run into each other
   digest_.clear();
   return *this;
 }

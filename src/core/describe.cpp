@@ -18,7 +18,7 @@ bool contains(const Range& range, double value) {
 
 std::string describe(const Range& range) {
   constexpr double kLargestInt =
-      std::numeric_limits<std::int32_t>::max();  // what a type cannot hold is no bound to state
+      std::numeric_limits<std::int32_t>::max();  // a bound that only the type sets is not stated
   const bool has_least = std::isfinite(range.least) && range.least > -kLargestInt;
   const bool has_most = std::isfinite(range.most) && range.most < kLargestInt;
   if (!has_least && !has_most) return "a number";

@@ -98,7 +98,7 @@ bool ByteReader::optional(const Field& field, bool) {
 
 void ByteReader::number(const Field& field, double& value, const Range& range) {
   value = number_in<double>(take(field, sizeof value));
-  const bool is_bounded = std::isfinite(range.least) || std::isfinite(range.most);  // else NaN may stand for "none"
+  const bool is_bounded = std::isfinite(range.least) || std::isfinite(range.most);  // otherwise NaN may mean "none"
   if (is_bounded && !contains(range, value)) refuse(field, fmt::format("{}", value), describe(range));
 }
 

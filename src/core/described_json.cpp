@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShownCharacters = 60;
 
-/// What is there, short, for a message.
+/// Returns the value as text for a message, at most 60 characters.
 std::string shown(const Json& value) {
   std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > kShownCharacters) text = std::string(utf8_prefix(text, kShownCharacters - 3)) + "...";
@@ -150,7 +150,7 @@ bool JsonReader::optional(const Field& field, bool) {
   const Json* value = find(field);
   if (value == nullptr) return false;
   if (value->is_null()) {
-    // Who writes such a field leaves it out: a null was put in its place by hand, and may have been meant to say more.
+    // Writers leave such a field out, so a person wrote this null, and its meaning is unclear.
     if (field.is_omitted) refuse(field, "null", "a value, or no such key");
     return false;
   }

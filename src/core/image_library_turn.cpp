@@ -3,7 +3,7 @@
 namespace incise {
 namespace {
 
-/// The libraries' own state is one for the whole process, and so is this.
+/// One lock for the whole process, because the libraries' own state belongs to the whole process.
 std::mutex& the_turn() {
   static std::mutex mutex;
   return mutex;

@@ -13,9 +13,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostKeys = 5000;  // in one object; no file of ours has more than some hundred
+constexpr std::size_t kMostKeys = 5000;  // in one object; files of incise have a few hundred at most
 constexpr int kDeepestJson =
-    64;  // deeper than any file of ours; whatever walks through the values calls itself once a level
+    64;  // deeper than any file of incise; code that walks through the values recurses once per level
 
 void require_finite(const ordered_json& value, const std::string& pointer) {
   if (value.is_number_float()) {
@@ -35,8 +35,8 @@ std::string line_and_column(std::string_view text, std::size_t byte) {
   return fmt::format("line {}, column {}", line, before.size() - begin + 1);
 }
 
-/// The library keeps the last of two equal keys without a word, and looks for a key by going through all: this watches
-/// for both.
+/// Refuses repeated keys, objects with too many keys and values nested too deep. The JSON library silently keeps the
+/// last of two equal keys, and finds a key by searching all of them.
 class KeyWatch {
  public:
   explicit KeyWatch(const std::filesystem::path& name) : name_(name) {}

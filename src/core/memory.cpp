@@ -12,7 +12,7 @@ namespace {
 
 using Bytes = std::optional<std::uint64_t>;
 
-/// The number behind `name` in a file of lines "name 123" or "name: 123 kB".
+/// Returns the number after `name` in a file of lines "name 123" or "name: 123 kB".
 Bytes number_in(const char* file, const std::string& name) {
   std::ifstream stream(file);
   for (std::string word; stream >> word; stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n')) {
@@ -26,7 +26,7 @@ Bytes kilobytes_in(const char* file, const std::string& name) {
   return kilobytes ? Bytes(1024 * *kilobytes) : std::nullopt;
 }
 
-/// The one number in a file; nothing for "max".
+/// Returns the one number in a file; nullopt for "max".
 Bytes number_in(const char* file) {
   std::ifstream stream(file);
   if (std::uint64_t number = 0; stream >> number) return number;
@@ -44,7 +44,8 @@ Bytes own_limit(decltype(RLIMIT_AS) which) {
   return limit.rlim_cur;
 }
 
-/// Left of the limit of the control group (version 2) that the process sees as the root, as in a container. Cached files give way.
+/// Returns the rest of the limit of the control group (version 2) that the process sees as the root, as in a container.
+/// Cached files count as free, because they give way.
 Bytes left_in_control_group() {
   const Bytes used = number_in("/sys/fs/cgroup/memory.current");
   const std::uint64_t cached = number_in("/sys/fs/cgroup/memory.stat", "inactive_file").value_or(0) +

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kLongestFound = 1000;
 
-/// Fit to be shown: what a file holds may be long, and not text.
+/// Returns `found` in a form that can be shown: the contents of a file may be long, and not text.
 std::string shown(const std::string& found) {
   std::string text;
   const bool is_text = !first_not_utf8(found);

@@ -6,7 +6,7 @@
 namespace incise {
 namespace {
 
-constexpr double kLeastFraction = 0.02;    // has to be done before a pace is estimated from it
+constexpr double kLeastFraction = 0.02;    // must be done before a pace is estimated
 constexpr double kSmoothingShare = 0.1;    // of the whole time
 
 }  // namespace

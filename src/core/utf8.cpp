@@ -3,7 +3,7 @@
 namespace incise {
 namespace {
 
-/// Bytes of the character that begins with `lead`; 0: none does.
+/// Returns the length, in bytes, of the character that begins with `lead`; 0 if no character does.
 std::size_t length_of(unsigned char lead) {
   if (lead < 0x80) return 1;
   if (lead >= 0xC2 && lead <= 0xDF) return 2;
@@ -11,7 +11,7 @@ std::size_t length_of(unsigned char lead) {
   return lead >= 0xF0 && lead <= 0xF4 ? 4 : 0;
 }
 
-/// Overlong forms, surrogates and what lies beyond U+10FFFF show in the second byte.
+/// Whether the second byte is valid: it reveals overlong forms, surrogates and characters beyond U+10FFFF.
 bool fits(unsigned char lead, unsigned char second) {
   if (lead == 0xE0) return second >= 0xA0;
   if (lead == 0xED) return second < 0xA0;

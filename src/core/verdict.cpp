@@ -119,7 +119,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      "The scan casts doubt on the tissue that was found in it, or another body in it may be the specimen."},
 });
 
-/// Place in the table: reasons of one severity are listed in its order.
+/// Returns the rule's row in the table, which orders the reasons of equal severity; the size of the table for an
+/// unknown id.
 std::size_t row_of(std::string_view id) {
   const auto row = std::find_if(kRules.begin(), kRules.end(), [&](const VerdictRule& rule) { return rule.id == id; });
   return static_cast<std::size_t>(row - kRules.begin());

@@ -14,10 +14,11 @@
 
 namespace incise {
 
-/// Each thread has its own range of neighbouring chunks, the same in every loop of like size, so that what it touched is still in its cache; when
-/// it is through it helps in the others' ranges. The caller waits for chunks, not for threads: one that wakes late finds nothing to do.
+/// Each thread has its own range of neighbouring chunks, the same in every loop of equal size, so its data are still in
+/// its cache. When its range is done, it helps with the other ranges. The caller waits for chunks, not for threads: a
+/// thread that wakes late finds nothing to do.
 struct Workers::Shared {
-  /// The next chunk of a range, and which loop that belongs to: (loop << 32) + chunk. On a cache line of its own.
+  /// The next chunk of a range and the loop that it belongs to: (loop << 32) + chunk. Has a cache line to itself.
   struct alignas(64) Ticket {
     std::atomic<std::uint64_t> value = 0;
   };
@@ -42,7 +43,8 @@ struct Workers::Shared {
   std::atomic<std::uint32_t> chunks_left = 0;
   std::atomic<bool> stopping = false;
 
-  // Of the current loop. Read only by a thread that holds one of its chunks: then the loop cannot end.
+  // The current loop. Only a thread that holds one of its chunks reads `body`, `count` and `chunk_size`: the loop
+  // cannot end meanwhile.
   const std::function<void(std::size_t, std::size_t, std::size_t)>* body = nullptr;
   std::size_t count = 0;
   std::size_t chunk_size = 1;
@@ -106,7 +108,7 @@ Workers::Workers(int threads) {
       shared_->threads.emplace_back([shared = shared_.get(), i] { shared->wait_for_work(i); });
     }
   } catch (const std::exception& problem) {
-    const std::size_t started = shared_->threads.size() + 1;  // the caller's is one of them
+    const std::size_t started = shared_->threads.size() + 1;  // with the caller's
     const std::string reason = problem.what();
     shared_->stop();
     throw Error(fmt::format("expected to start {} threads, found that only {} could be started ({}); use fewer",
@@ -132,7 +134,7 @@ void Workers::for_chunks(std::size_t count, std::size_t chunk_size,
     return;
   }
   const std::uint32_t loop = shared.loop.load() + 1;
-  // First no ticket fits the last loop any more, so that a thread which wakes late cannot take one by the new bounds.
+  // First invalidate the tickets of the last loop, so a thread that wakes late cannot take one by the new bounds.
   for (Shared::Ticket& ticket : shared.tickets) ticket.value = (static_cast<std::uint64_t>(loop) << 32) + 0xFFFFFFFFU;
   shared.body = &body;
   shared.count = count;

@@ -19,17 +19,17 @@ namespace incise {
 namespace {
 
 constexpr int kRenewalSteps =
-    20;  // what a workspace carries over, the coarse matrix of the preconditioner, may be this stale
+    20;  // greatest age of everything that a workspace carries over, such as the preconditioner's coarse matrix
 constexpr int kVerticesPerAggregate = 140;
 constexpr double kForceFloorMn = 5.0;    // scale of the stopping test when hardly anything is held
 constexpr double kLeastShare = 0.02;     // of a touched tet's volume that the tool holds: a corner is still held
 constexpr double kFragmentShare = 0.01;  // of the body's volume at rest: smaller loose parts are cut away with the kerf
-constexpr int kIntervalsPerStep = 4;     // after each of which the distance to the tool is looked at within a step
+constexpr int kIntervalsPerStep = 4;     // at whose ends the distance to the tool is sampled in a step
 constexpr double kLeastDecrease =
-    1e-4;                         // of the energy on the way to rest, as a share of what the slope promises (Armijo)
+    1e-4;                         // of the energy on the way to rest, as a share of the predicted decrease (Armijo)
 constexpr int kMaxHalvings = 12;  // of such a step
-constexpr double kSplittingMm = 2.7;      // at most, of the tool's way between two splits
-constexpr double kFullDose = 1.0 - 1e-9;  // a dose is a sum over steps: what rounding may leave it short of 1
+constexpr double kSplittingMm = 2.7;      // greatest travel of the tool between two splits
+constexpr double kFullDose = 1.0 - 1e-9;  // 1, less the rounding of a sum over steps
 
 }  // namespace
 
@@ -37,7 +37,7 @@ struct CutWorkspace::Data {
   std::unique_ptr<const TissueModel> split;  // on the split mesh; null: the mesh is whole
   std::shared_ptr<const FaceAdjacency> whole_neighbours;
   FaceAdjacency split_neighbours;         // empty: the mesh is whole
-  std::vector<double> rest_volumes_mm3;   // that each tet holds
+  std::vector<double> rest_volumes_mm3;   // per tet: its part of the whole tet's
   std::vector<std::uint8_t> is_anchored;  // vertices that a constraint holds
   StepStiffness stiffness;
   TwoLevelPcg solver;
@@ -46,9 +46,9 @@ struct CutWorkspace::Data {
   Points before;
   Points left;                          // positions after the last step
   double body_volume_mm3 = 0.0;         // at rest, uncut
-  int next_step = -1;                   // the one that may build on what is kept here
-  std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they stay where they are
-  std::size_t carved_then = 0;          // tets carved when that was found
+  int next_step = -1;                   // the step that may reuse what is kept here
+  std::vector<std::uint8_t> is_orphan;  // vertices without a live tet: nothing holds them, so they keep their positions
+  std::size_t carved_then = 0;          // number of removed tets when is_orphan was found
   std::optional<PointLattice> lattice;  // of a cut by points
   std::vector<std::uint8_t> every_tet;  // 1 each
   NearTets near;
@@ -123,7 +123,7 @@ Vec3 centroid(const std::array<Vec3, 4>& corners) {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
 }
 
-/// Root mean square of the edges.
+/// Root mean square of the edge lengths.
 double mean_edge_mm(const std::array<Vec3, 4>& corners) {
   double squares = 0.0;
   for (std::size_t a = 0; a < 4; ++a) {
@@ -132,7 +132,7 @@ double mean_edge_mm(const std::array<Vec3, 4>& corners) {
   return std::sqrt(squares / 6.0);
 }
 
-/// Norm over all vertices of what each is given in all, mN.
+/// Sums the pulls on each vertex and returns the norm over all vertices, mN.
 double norm_of_sums(std::vector<std::pair<VertexId, Vec3>> pulls) {
   std::stable_sort(pulls.begin(), pulls.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   double squared = 0.0;
@@ -150,12 +150,12 @@ void add_block(const Mat3& block, std::int32_t slot, BlockMatrix& matrix) {
   Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.block(slot)) += block;
 }
 
-/// Adds the pull of the tool on bonded tets and its exact (constant) tangent. The tool pulls from where it stood when
-/// contact was last looked at: what it holds and where it holds it belong to one moment. From `next` it would pull
-/// tissue that it has let go on the way there, and the drag would grow with the step (docs/models/cutting.md). The
-/// share of a tet that is held is that of the last pose, so the pull is linear in the step.
-/// @returns the stiffness of each bond, mN/mm, in their order; `scale` receives the norm of the pulls over all
-/// vertices, mN.
+/// Adds the pull of the tool on bonded tets and its exact (constant) tangent. The tool pulls from its pose at the last
+/// contact search, so bonds and holding places belong to one moment. From `next` it would pull tissue that it has
+/// released on the way there, and the drag would grow with the step (docs/models/cutting.md). The held share of a tet
+/// is also that at the last pose, so the pull is linear in the step.
+/// @param scale  receives the norm of the pulls over all vertices, mN.
+/// @returns the stiffness of each bond, mN/mm, in the order of state.bonds.
 std::vector<double> add_bonds(const TissueModel& model, const CutSettings& settings, const Tool& tool,
                               const CutState& state, std::span<Vec3> forces, BlockMatrix& matrix, double& scale) {
   std::vector<double> stiffnesses;
@@ -163,7 +163,7 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   const double limit = touching_distance_mm(tool, settings);
   const ToolCore core(tool, state.tool);
   const Mat3 held = held_directions(tool, state.tool);
-  // A hold is limited by what the tissue beneath it resists while it lasts.
+  // The resistance of the tissue beneath it, over the duration of a hold, limits the hold.
   const double stiffer = shear_ratio(model.material, settings.tissue_s(1.0 / settings.dwell_rate_per_s()));
   for (const Bond& bond : state.bonds) {
     const auto corners = corners_of(model.mesh, state.tissue.positions, bond.tet.index());
@@ -186,8 +186,8 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   return stiffnesses;
 }
 
-/// Adds what the tool does to points about it, and its exact (constant) tangent. @returns the norm of the pulls over
-/// all vertices, mN.
+/// Adds the pull of the tool on the points near it, and its exact (constant) tangent.
+/// @returns the norm of the pulls over all vertices, mN.
 double add_hold(const TissueModel& model, const PointHold& hold, std::span<Vec3> forces, BlockMatrix& matrix) {
   std::vector<std::pair<VertexId, Vec3>> pulls;
   for (const HeldTet& held : hold.tets) {
@@ -204,7 +204,7 @@ double add_hold(const TissueModel& model, const PointHold& hold, std::span<Vec3>
   return norm_of_sums(std::move(pulls));
 }
 
-/// Lets tissue that the tool has left too far behind slip: the place where it is held follows.
+/// Lets tissue slip that is too far behind its holding place: shifts the holding place back.
 void slip(const TissueModel& model, const Tool& tool, double slip_mm, CutState& state, CutStepReport& report) {
   const Mat3 held = held_directions(tool, state.tool);
   for (Bond& bond : state.bonds) {
@@ -217,10 +217,10 @@ void slip(const TissueModel& model, const Tool& tool, double slip_mm, CutState& 
   }
 }
 
-/// What the held tissue, where it came to lie, does to the tool: force, mN, and torque about the tip, mN mm.
-/// @returns for each bond the work that the tool did on its tet in this step per rest volume, kPa, from that pull and
-/// the way to
-///          `next` of the place of the tool that holds it; 0 where the tet did work on the tool.
+/// Adds the force (mN) and the torque about the tip (mN mm) of the held tissue, at its new positions, on the tool to
+/// `report`.
+/// @returns for each bond the tool's work on its tet in this step per rest volume, kPa: from this pull and the way of
+///          the holding place to `next`; 0 if the tet did work on the tool.
 std::vector<double> load_tool(const TissueModel& model, const CutState& state, const Tool& tool, const ToolPose& next,
                               std::span<const double> stiffnesses, CutStepReport& report) {
   const Mat3 held = held_directions(tool, state.tool);
@@ -238,7 +238,7 @@ std::vector<double> load_tool(const TissueModel& model, const CutState& state, c
   return works_kpa;
 }
 
-/// Of the vertices of tets that were carved since it was asked last; at first of all.
+/// Updates scratch.is_orphan: at the vertices of tets removed since the last call; in the first call, at all vertices.
 void find_orphans(const TissueModel& model, const CutState& state, CutWorkspace::Data& scratch) {
   const auto has_live_tet = [&](std::size_t v) {
     const auto begin = model.vertex_tets.begin() + model.vertex_tet_start[v];
@@ -258,17 +258,17 @@ void find_orphans(const TissueModel& model, const CutState& state, CutWorkspace:
   scratch.carved_then = state.record.removals.size();
 }
 
-/// What the tissue strives to lower once the tool is out, µJ.
+/// The energy that the tissue minimises once the tool is out, µJ.
 double potential_energy_uj(const TissueModel& model, const TissueState& tissue) {
   double work_uj = 0.0;
   for (std::size_t v = 0; v < model.dead_load_mn.size(); ++v) work_uj += model.dead_load_mn[v].dot(tissue.positions[v]);
   return elastic_energy_uj(model, tissue) + support_energy_uj(model, tissue) - work_uj;
 }
 
-/// Halves a step towards rest until it lowers the energy; crushed tets would throw each other about for ever without
-/// it.
-/// @param pull_mn  what is out of balance where the step begins. @returns the share of the step that is taken; 0: none
-/// lowers the energy.
+/// Halves a step towards rest until it lowers the energy, and takes it. Without this, crushed tets would push each
+/// other back and forth for ever.
+/// @param pull_mn  unbalanced force at the beginning of the step.
+/// @returns the share of the step that was taken; 0: none lowers the energy.
 double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_mn, std::span<const Vec3> increment,
                            TissueState& tissue) {
   const std::vector<Vec3> start = tissue.positions;
@@ -284,21 +284,21 @@ double take_lowering_share(const TissueModel& model, std::span<const Vec3> pull_
   return 0.0;
 }
 
-/// What steadies loose bits is the mass over the square of this, whatever the step takes: a mass term over the step's
-/// own time would be a resistance that grows with the tool's speed, and without bound in short steps.
+/// Time in the mass term (mass over time squared) that steadies loose bits. It is constant: with the step's own time
+/// the term would be a resistance that grows with the tool's speed, and without bound in short steps.
 constexpr double kSteadyingS = 0.02;
 
-/// Moves the tissue by one linearised quasi-static step. How long it takes matters to viscous tissue alone. Once the
-/// tool is out, that is looked at when it has relaxed.
-/// @returns the stiffness of each bond, mN/mm, in their order.
+/// Moves the tissue by one linearised quasi-static step. `step_s` matters only for viscous tissue. Without `next` (the
+/// tool is out), viscous tissue counts as relaxed.
+/// @returns the stiffness of each bond, mN/mm, in the order of state.bonds; empty with `hold`, or without `next`.
 std::vector<double> move_tissue(const TissueModel& model, const CutSettings& settings, const Tool& tool,
                                 CutState& state, CutWorkspace::Data& scratch, const std::optional<ToolPose>& next,
                                 const PointHold* hold, double step_s, Workers& workers, CutStepReport& report) {
   const bool is_fresh = is_renewal_step(state) || state.step != scratch.next_step;
   scratch.next_step = state.step + 1;
   std::copy(model.dead_load_mn.begin(), model.dead_load_mn.end(), scratch.right_side.begin());
-  // On the way to rest the turning of tets has to be in the tangent: with rotations frozen, a flap under tension
-  // overshoots by more than it was off and swings for ever.
+  // On the way to rest the tangent must include the rotation of tets. With frozen rotations, a flap under tension
+  // overshoots by more than its error and swings for ever.
   const Tangent tangent = next ? Tangent::FrozenRotations : Tangent::Projected;
   const std::optional<double> viscous_s = next ? std::optional(settings.tissue_s(step_s)) : std::nullopt;
   scratch.stiffness.begin(model, state.tissue, kSteadyingS, is_fresh, tangent, scratch.right_side, workers, viscous_s);
@@ -336,21 +336,21 @@ std::vector<double> move_tissue(const TissueModel& model, const CutSettings& set
     for (std::size_t v = 0; v < scratch.increment.size(); ++v) state.tissue.positions[v] += scratch.increment[v];
   } else {
     const double share = take_lowering_share(model, scratch.right_side, scratch.increment, state.tissue);
-    if (share > 0.0) report.max_step_mm *= share;  // where no share lowers the energy it is stuck, which is not rest
+    if (share > 0.0) report.max_step_mm *= share;  // if no share lowers the energy, the tissue is stuck, not at rest
   }
   scratch.near.moved(report.max_step_mm);
   scratch.left = state.tissue.positions;
   return stiffnesses;
 }
 
-/// What a step's contact with the tool means for a tet.
+/// A tet's contact with the tool in a step.
 struct Contact {
   ContactInterval interval;
-  Vec3 offset_mm = Vec3::Zero();  ///< of its centroid from the tool's tip where contact began
+  Vec3 offset_mm = Vec3::Zero();  ///< from the tool's tip to the tet's centroid when contact began
 };
 
-/// Follows the contact of the candidates with the tool through the step; `cores` are the tool's at evenly spaced
-/// moments.
+/// Finds the contact of each candidate with the tool in a step.
+/// @param cores  of the tool at evenly spaced moments of the step.
 std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, const CutState& state,
                                    std::span<const Vec3> before, const ToolPose& next, std::span<const ToolCore> cores,
                                    double limit_mm, std::span<const TetId> candidates, Workers& workers) {
@@ -386,10 +386,10 @@ std::vector<ToolCore> cores_on_the_way(const Tool& tool, const ToolPose& from, c
   return cores;
 }
 
-/// Follows the contact of the tissue with the tool through the step: adds to the dose of what is touched, makes bonds
-/// where contact begins and drops them where it ends. @param works_kpa  per bond: the tool's work in this step per rest
-/// volume.
-/// @returns the tets whose dose is full now, ascending.
+/// Follows the contact of the tissue with the tool through the step: adds to the dose of touched tets, makes bonds
+/// where contact begins and drops them where it ends.
+/// @param works_kpa  per bond: the tool's work in this step per rest volume.
+/// @returns the tets whose dose is now full, ascending.
 std::vector<TetId> follow_contact(const TissueModel& model, const CutSettings& settings, const Tool& tool,
                                   CutState& state, CutWorkspace::Data& scratch, const ToolPose& next, double step_s,
                                   std::span<const double> works_kpa, Workers& workers, CutStepReport& report) {
@@ -436,8 +436,8 @@ void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause c
                                    rest_volume_mm3(model, state.splits, tet)});
 }
 
-/// Removes fragments that hang by no face, next to tets that are gone or among those that have other corners now.
-/// @returns how many tets went.
+/// Removes the loose fragments that contain or border on a tet of `changed`, and the bonds of all removed tets.
+/// @returns the number of tets removed.
 std::size_t remove_loose(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch,
                          const std::vector<TetId>& changed) {
   const std::vector<TetId> loose =
@@ -448,8 +448,8 @@ std::size_t remove_loose(const TissueModel& model, CutState& state, const CutWor
   return loose.size();
 }
 
-/// Removes tets (live, ascending), then what is left hanging by no face. @returns how many fragments' tets went with
-/// them.
+/// Removes tets (live, ascending), then the loose fragments that result.
+/// @returns the number of tets in these fragments.
 std::size_t carve(const TissueModel& model, CutState& state, const CutWorkspace::Data& scratch,
                   const std::vector<TetId>& due) {
   if (due.empty()) return 0;
@@ -477,7 +477,7 @@ std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace&
 
 namespace {
 
-/// Tets that come within a distance of the tool at one of the moments that its cores are of, ascending.
+/// Wanted tets that lie within a distance of the tool at one of the moments of its cores, ascending.
 std::vector<TetId> tets_near(const TissueModel& model, NearTets& finder, std::span<const std::uint8_t> is_wanted,
                              std::span<const Vec3> before, std::span<const Vec3> after, std::span<const ToolCore> cores,
                              double distance_mm, Workers& workers) {
@@ -500,7 +500,7 @@ std::vector<TetId> tets_near(const TissueModel& model, NearTets& finder, std::sp
   return near;
 }
 
-/// The points of the state.
+/// Returns the points of the state; rebuilds them if those of the workspace are others.
 PointLattice& lattice_for(const TissueModel& model, const CutState& state, CutWorkspace::Data& scratch) {
   if (!scratch.lattice || !scratch.lattice->is_of(state.points)) {
     scratch.lattice.emplace(model, state.points, state.splits);
@@ -509,15 +509,16 @@ PointLattice& lattice_for(const TissueModel& model, const CutState& state, CutWo
   return *scratch.lattice;
 }
 
-/// Whether tets are split after a step: every n steps, where n is the greatest divisor of kRenewalSteps that takes the
-/// tool at most kSplittingMm on, or 1. Not after each, because everything is made anew then.
+/// Whether tets are split after a step: every n steps, where n is the greatest divisor of kRenewalSteps in which the
+/// tool travels at most kSplittingMm, or 1. Not after every step, because a split rebuilds the workspace.
 bool is_splitting_step(const CutSettings& settings, int step) {
   int steps = kRenewalSteps;
   while (steps > 1 && (kRenewalSteps % steps != 0 || steps * settings.advance_per_step_mm > kSplittingMm)) --steps;
   return step % steps == 0;
 }
 
-/// Splits the tets that have come apart, and removes what hangs by no face then. @returns how many tets went.
+/// Splits the tets that have come apart, and removes the loose fragments that result.
+/// @returns the number of tets removed.
 std::size_t split_mesh_of(const TissueModel& whole, CutState& state, CutWorkspace& workspace) {
   const auto& parted = state.points.parted_step;
   if (std::ranges::none_of(parted, [&](int step) { return step > state.split_step; })) return 0;
@@ -531,7 +532,7 @@ std::size_t split_mesh_of(const TissueModel& whole, CutState& state, CutWorkspac
   scratch.lattice = std::move(lattice);
   scratch.every_tet.assign(split.mesh.tets.size(), 1);
   const std::size_t loose = remove_loose(split, state, workspace.data(), touched);
-  // Fragments of one step stand in order, whichever change cut them off.
+  // The fragments of one step are recorded in ascending order, whichever change cut them off.
   std::vector<Removal>& removals = state.record.removals;
   auto first = removals.end();
   while (first != removals.begin() && std::prev(first)->step == state.step &&
@@ -541,7 +542,7 @@ std::size_t split_mesh_of(const TissueModel& whole, CutState& state, CutWorkspac
   return loose;
 }
 
-/// A step of a cut by points, the tool in.
+/// A step of a cut by points with the tool in.
 CutStepReport advance_points(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                              CutWorkspace::Data& scratch, const ToolPose& next, double step_s, Workers& workers) {
   CutStepReport report;
@@ -562,7 +563,7 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   }
   load_tool(model, settings, tool, next, hold, *scratch.lattice, scratch.before, state, report);
   const std::vector<ToolCore> cores = cores_on_the_way(tool, state.tool, next);
-  // Removed tets, too: between a dose that grows and one that stopped, the kerf's border would lie too far inwards.
+  // Removed tets, too: if their doses stopped growing, the kerf's border would lie too far inwards.
   const std::vector<TetId> candidates = tets_near(model, scratch.near, scratch.every_tet, scratch.before,
                                                   state.tissue.positions, cores, settings.kernel_radius_mm, workers);
   meet_points(candidates, *scratch.lattice, state.points);
@@ -574,15 +575,15 @@ CutStepReport advance_points(const TissueModel& model, const CutSettings& settin
   return report;
 }
 
-/// Whether a tet has a face on the boundary of what is live.
+/// Whether a tet has a face on the boundary of the live tets.
 bool is_at_surface(const FaceAdjacency& neighbours, std::span<const std::uint8_t> is_live, TetId tet) {
   return std::ranges::count_if(neighbours.of(tet.index()), [&](std::int32_t neighbour) {
            return is_live[static_cast<std::size_t>(neighbour)] != 0;
          }) < 4;
 }
 
-/// The paper's rule, before the tissue moves: the tool holds the tets at the surface that it touches where it is, and
-/// no others. What a removal bared is touched from the next step on, as by SofaCarving.
+/// The paper's rule, before the tissue moves: the tool holds exactly the tets at the surface that it touches in its
+/// present pose. Tets that a removal exposes are touched from the next step on, as in SofaCarving.
 void touch_surface(const TissueModel& model, const CutSettings& settings, const Tool& tool, CutState& state,
                    CutWorkspace::Data& scratch, Workers& workers) {
   const std::vector<ToolCore> here{ToolCore(tool, state.tool)};
@@ -604,8 +605,8 @@ void touch_surface(const TissueModel& model, const CutSettings& settings, const 
   state.bonds = std::move(bonds);
 }
 
-/// The paper's rule, once the tissue has moved: a step counts for each tet that is held. @returns the tets whose count
-/// is full now, ascending.
+/// The paper's rule, once the tissue has moved: counts a step for each held tet.
+/// @returns the tets whose count is now full, ascending.
 std::vector<TetId> count_step(const TissueModel& model, const CutSettings& settings, CutState& state,
                               CutStepReport& report) {
   const double unit = settings.dwell_rate_per_s() * settings.reference_step_s;  // 1 / dullness at the reference energy

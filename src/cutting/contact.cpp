@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-constexpr double kListedBeyondMm = 3.0;  // how far tool and tissue may move before tets are listed anew
+constexpr double kListedBeyondMm = 3.0;  // travel of tool and tissue after which the list is rebuilt
 constexpr double kRoundingMm = 1e-9;     // of positions that are sums of steps
 
 Box3 grown(const Box3& box, double by_mm) {
@@ -23,7 +23,7 @@ double point_segment_squared(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (p - a - t * ab).squaredNorm();
 }
 
-/// Squared distance of two segments; the closest pair of two segments either is interior to both or involves an end point.
+/// Squared distance of two segments. The closest pair of points is interior to both or includes an end point.
 double segment_segment_squared(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   double best = std::min({point_segment_squared(a, c, d), point_segment_squared(b, c, d), point_segment_squared(c, a, b),
                           point_segment_squared(d, a, b)});
@@ -42,7 +42,8 @@ double segment_segment_squared(const Vec3& a, const Vec3& b, const Vec3& c, cons
   return best;
 }
 
-/// Squared distance of p from the plane of a triangle if p projects inside it; infinity otherwise (edges are handled elsewhere).
+/// Squared distance of p from the plane of a triangle if p projects into the triangle; otherwise infinity (edges are
+/// handled elsewhere).
 double point_triangle_interior_squared(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const double area = normal.squaredNorm();
@@ -64,7 +65,7 @@ bool meets(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
     const Vec3& origin = tet[static_cast<std::size_t>(i)];
     Vec3 inwards = (tet[static_cast<std::size_t>(j)] - origin).cross(tet[static_cast<std::size_t>(k)] - origin);
     const double side = inwards.dot(tet[static_cast<std::size_t>(corner)] - origin);
-    if (side == 0.0) return false;  // flat: its edges tell the distance
+    if (side == 0.0) return false;  // flat: its edges give the distance
     if (side < 0.0) inwards = -inwards;
     const double at_a = inwards.dot(a - origin);
     const double at_b = inwards.dot(b - origin);
@@ -75,14 +76,14 @@ bool meets(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
   return enter <= leave;
 }
 
-/// A flat core of four corners as a place and two sides.
+/// A flat core of four corners, as a corner and two sides.
 struct Rectangle {
   Vec3 origin;
   Vec3 u;
   Vec3 v;
   explicit Rectangle(std::span<const Vec3> corners) : origin(corners[0]), u(corners[1] - corners[0]), v(corners[3] - corners[0]) {}
 
-  /// Whether a point of space projects into the rectangle along its normal.
+  /// Whether a point projects into the rectangle along its normal.
   [[nodiscard]] bool is_over(const Vec3& p) const {
     const double s = (p - origin).dot(u);
     const double t = (p - origin).dot(v);
@@ -91,8 +92,8 @@ struct Rectangle {
   [[nodiscard]] double height(const Vec3& p) const { return (p - origin).dot(u.cross(v).normalized()); }
 };
 
-/// Distance of a tet from a rectangle: the nearest pair has a point on the rectangle's border, or it is a corner of the tet over the
-/// rectangle's inside, or an edge of the tet goes through.
+/// Distance of a tet from a rectangle. The nearest pair has a point on the rectangle's border, or is a corner of the
+/// tet over the rectangle's interior, or an edge of the tet passes through the rectangle.
 double distance_to_rectangle(const std::array<Vec3, 4>& tet, std::span<const Vec3> corners) {
   double best = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 4; ++i) best = std::min(best, distance_to_segment(tet, corners[i], corners[(i + 1) % 4]));
@@ -148,21 +149,22 @@ double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const 
 
 namespace {
 
-constexpr int kPassingSteps = 12;          // at most, of regula falsi towards a moment at which contact begins or ends
-constexpr double kPassingMm = 1e-6;        // it is found when the distance is the limit to within this
-constexpr int kLeastSteps = 8;             // of the golden section towards the moment of the least distance
+constexpr int kPassingSteps = 12;          // at most, of regula falsi for a moment at which contact begins or ends
+constexpr double kPassingMm = 1e-6;        // such a moment is found when the distance is within this of the limit
+constexpr int kLeastSteps = 8;             // of the golden section search for the moment of least distance
 
-/// A moment and by how much the distance is over the limit then.
+/// A moment, and the distance at it minus the limit.
 struct Moment {
   double t;
   double over_mm;
 };
 
-/// The moment between two at which the limit is passed; it lies between their distances. Regula falsi in the Illinois variant.
+/// The moment between two at which the distance crosses the limit, which lies between their distances. Regula falsi,
+/// Illinois variant.
 template <class Over>
 double passing_moment(const Over& over, Moment from, Moment to) {
   double t = from.t;
-  int kept = 0;  // the end that was kept last: its weight is halved when it is kept again
+  int kept = 0;  // the end that was kept last; its value is halved if it is kept again
   for (int i = 0; i < kPassingSteps; ++i) {
     t = from.t + (to.t - from.t) * from.over_mm / (from.over_mm - to.over_mm);
     const double now = over(t);
@@ -180,7 +182,8 @@ double passing_moment(const Over& over, Moment from, Moment to) {
   return t;
 }
 
-/// A moment of contact between two without, or that of the least distance where there is none (golden section).
+/// A moment of contact between two moments without contact or, if there is none, the moment of least distance (golden
+/// section search).
 template <class Over>
 Moment least_moment(const Over& over, double from, double to) {
   const double share = 0.5 * (std::sqrt(5.0) - 1.0);
@@ -225,7 +228,8 @@ ContactInterval contact_interval(std::span<const double> distances_mm, const std
     interval.fraction = (end == moments.end() ? 1.0 : passing_moment(over, *(end - 1), *end)) - interval.first;
     return interval;
   }
-  // No contact at any of the moments. A convex distance falls no farther between two than it changes from one to the next.
+  // No contact at any of the moments. Between two of them a convex distance falls no farther than it changes from one
+  // to the next.
   const auto least = std::min_element(moments.begin(), moments.end(), [](const Moment& a, const Moment& b) { return a.over_mm < b.over_mm; });
   if (least->over_mm > change) return interval;
   const Moment& before = least == moments.begin() ? *least : *(least - 1);
@@ -278,7 +282,8 @@ std::vector<TetId> NearTets::candidates(const TissueModel& model, std::span<cons
 }
 
 double share_within(const std::array<Vec3, 4>& tet, const ToolCore& core, double limit_mm) {
-  // The points (i, j, k, l) / 4 with i + j + k + l = 4, drawn a little towards the centroid so that each stands for its surroundings.
+  // The points (i, j, k, l) / 4 with i + j + k + l = 4, moved towards the centroid so that each represents its
+  // surroundings.
   constexpr int kOrder = 4;
   constexpr double kShrink = 0.8;
   const Vec3 centroid = 0.25 * (tet[0] + tet[1] + tet[2] + tet[3]);

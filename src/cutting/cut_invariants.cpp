@@ -12,10 +12,10 @@
 namespace incise {
 namespace {
 
-/// Relative rounding of a sum of millions of positive numbers, taken in different orders.
+/// Relative rounding error of a sum of millions of positive numbers, taken in different orders.
 constexpr double kRounding = 1e-10;
 
-/// Collects sentences; of each kind the first alone.
+/// Collects the first violation of each kind, as a sentence.
 class Violations {
  public:
   template <class... Args>
@@ -48,7 +48,7 @@ bool is_ordered(const Removal& before, const Removal& next) {
   return was_loose == is_loose ? before.tet < next.tet : is_loose;
 }
 
-/// @returns how often each tet is in the record.
+/// @returns one flag per tet: 1 if the tet is in the record.
 std::vector<std::uint8_t> check_record(const TissueModel& model, const CutState& state, Violations& violations) {
   std::vector<std::uint8_t> times_removed(model.mesh.tets.size(), 0);
   bool unknown = false, twice = false, disordered = false, ahead = false, volume = false;
@@ -91,7 +91,7 @@ void check_balance(const TissueModel& model, const CutState& state, std::span<co
   const double found_mm3 = live_mm3 + state.record.removed_volume_mm3();
   violations.add(!(std::abs(found_mm3 - uncut_mm3) <= kRounding * uncut_mm3), volume,
                  "balance: live and removed rest volume are {} mm³, the uncut body's is {} mm³", found_mm3, uncut_mm3);
-  // The model keeps mass by vertex, so this also says that no mass was lost when it was shared out.
+  // The model stores mass per vertex, so this also checks that lumping lost no mass.
   const double uncut_kg = std::accumulate(model.vertex_mass_kg.begin(), model.vertex_mass_kg.end(), 0.0);
   const double found_kg = found_mm3 * units::kg_mm3_from_kg_m3(model.material.density_kg_m3);
   violations.add(!(std::abs(found_kg - uncut_kg) <= kRounding * uncut_kg), mass,

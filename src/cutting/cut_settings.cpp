@@ -8,10 +8,10 @@
 namespace incise {
 namespace {
 
-constexpr double kMaxContactS = 600.0;      // until tissue is cut: beyond it no cut ends in any time worth waiting for
-constexpr double kLeastAdvanceMm = 1e-4;    // a step: below it a cut takes a million steps
-constexpr double kLeastResidualTolerance = 1e-6;  // a hundredth of what a converged cut is solved to
-constexpr double kMostResidualTolerance = 0.3;    // beyond it a step leaves more than the next takes up: another cut
+constexpr double kMaxContactS = 600.0;      // until tissue is cut: beyond it no cut ends in a reasonable time
+constexpr double kLeastAdvanceMm = 1e-4;    // per step: below it a cut takes a million steps
+constexpr double kLeastResidualTolerance = 1e-6;  // a hundredth of the tolerance of a converged cut
+constexpr double kMostResidualTolerance = 0.3;    // beyond it a step leaves more than the next corrects: another cut
 
 }  // namespace
 

@@ -23,7 +23,7 @@ using Edge = std::pair<VertexId, VertexId>;  // of the whole mesh, the lower num
 /// A vertex of a piece of a tet.
 struct Corner {
   VertexId id;                   // in the divided mesh
-  Edge key;                      // on whose middle it lies; twice the same number: a vertex
+  Edge key;                      // the edge whose middle it is; with two equal numbers: that vertex
   std::array<double, 4> shares;  // barycentric, in the tet
   double dose;
 };
@@ -35,7 +35,7 @@ constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 
 constexpr std::array<std::array<std::size_t, 4>, 8> kPieces{
     {{0, 4, 5, 6}, {4, 1, 7, 8}, {5, 7, 2, 9}, {6, 8, 9, 3}, {4, 9, 5, 6}, {4, 9, 6, 8}, {4, 9, 8, 7}, {4, 9, 7, 5}}};
 
-/// Pairs of kPieces that share a face, and its corners among the ten.
+/// A pair of kPieces that share a face, and the face's corners among the ten.
 struct Neighbours {
   std::size_t a, b;
   std::vector<std::size_t> face;
@@ -103,7 +103,7 @@ class Divider {
   }
 
  private:
-  /// A corner or the middle of an edge, of a tet of the whole mesh.
+  /// One of the ten places of a tet of the whole mesh: a corner (0 … 3) or the middle of an edge (4 … 9); without `id`.
   Corner corner(TetId whole, std::size_t i) {
     const Tet& named = whole_.mesh.tets[whole.index()];
     Corner corner{};
@@ -114,7 +114,7 @@ class Divider {
     corner.dose = dose_at(corner.key);
     return corner;
   }
-  /// The same of one of its copies in the split mesh.
+  /// The same place, with the `id` that it has in one of the tet's copies in the split mesh.
   Corner corner(TetId whole, TetId split, std::size_t i) {
     Corner corner = this->corner(whole, i);
     const Tet& own = split_.tets[split.index()];
@@ -144,7 +144,7 @@ class Divider {
     return at->second;
   }
 
-  /// How many of a tet's ten places lie in the kerf.
+  /// Counts those of a tet's ten places that lie in the kerf.
   [[nodiscard]] int places_in_kerf(TetId tet) {
     const Tet& corners = whole_.mesh.tets[tet.index()];
     int count = 0;
@@ -173,8 +173,9 @@ class Divider {
     return piece;
   }
 
-  /// A tet with edges of divided ones: a fan over faces that are divided where their edges are. Where these edges lie
-  /// in one face, from the vertex across it, else from the tet's middle over all faces.
+  /// Adds a tet that is not divided but has halved edges, as a fan over its faces, which are divided at the halved
+  /// edges. If these edges lie in one face, the fan runs over that face from the opposite vertex; otherwise over all
+  /// faces from the tet's middle.
   void add_fan(TetId whole, TetId split, std::int32_t step) {
     const Piece piece = whole_piece(split);
     for (std::size_t f = 0; f < 4; ++f) {
@@ -198,7 +199,7 @@ class Divider {
     for (std::size_t c = 0; c < 4; ++c) {
       if (c != face) at.push_back(c);
     }
-    std::ranges::sort(at, {}, [&](std::size_t c) { return named[c]; });  // neighbours divide their common face alike
+    std::ranges::sort(at, {}, [&](std::size_t c) { return named[c]; });  // neighbours divide a shared face alike
     const auto add_part = [&](const Corner& a, const Corner& b, const Corner& c) {
       add({from, a, b, c}, whole, split, step);
     };
@@ -219,7 +220,7 @@ class Divider {
   template <class Add>
   static void add_parts(const Corner& a, const Corner& b, const Corner& c, const std::optional<Corner>& ab,
                         const std::optional<Corner>& ac, const std::optional<Corner>& bc, const Add& add_part) {
-    if (ab) {  // the triangles on either side of its line to c have one at most
+    if (ab) {  // the triangles on either side of the line from ab to c have at most one halved edge
       add_parts(a, *ab, c, std::nullopt, ac, std::nullopt, add_part);
       add_parts(*ab, b, c, std::nullopt, std::nullopt, bc, add_part);
     } else if (ac) {
@@ -233,15 +234,15 @@ class Divider {
     }
   }
 
-  /// Where an edge of a tet is halved.
+  /// The middle of an edge of a tet; nullopt: the edge is not halved.
   std::optional<Corner> middle_of(TetId whole, TetId split, std::size_t a, std::size_t b) {
     if (!is_halved(whole, a, b)) return std::nullopt;
     const auto edge = std::ranges::find(kEdges, std::array{std::min(a, b), std::max(a, b)});
     return corner(whole, split, 4 + static_cast<std::size_t>(edge - kEdges.begin()));
   }
 
-  /// What hangs together in a tet on one side of the border moves with one copy of it: the one that holds most of the
-  /// points next to its pieces.
+  /// Divides a tet at the border. Each connected part of the tet on one side of the border moves with one copy of the
+  /// tet: the copy that holds most of the points nearest to the part's pieces.
   void divide(TetId whole) {
     static const std::vector<Neighbours> kNeighbours = neighbouring_pieces();
     std::array<Corner, 10> places{};
@@ -252,7 +253,7 @@ class Divider {
       for (const auto& [a, b, face] : kNeighbours) {
         if (std::ranges::any_of(face, is_own)) sets.join(a, b);
       }
-      std::array<std::optional<std::size_t>, 8> near;  // the point next to each piece
+      std::array<std::optional<std::size_t>, 8> near;  // the point nearest to each piece
       std::map<std::size_t, std::map<TetId, int>> votes;
       for (std::size_t k = 0; k < kPieces.size(); ++k) {
         std::array<double, 4> middle{};
@@ -271,11 +272,11 @@ class Divider {
         if (!near[k]) continue;
         const auto& counts = votes.at(sets.root(k));
         const auto most = std::ranges::max_element(counts, {}, [](const auto& count) { return count.second; });
-        // Where halves of edges do not show what parts a tet's two sides, each piece goes by the point beside it.
+        // If the halves of edges do not resolve the kerf between two parts, each piece follows its nearest point.
         const TetId split = !is_gone && votes.size() == 1 ? state_.points.tet_of[*near[k]] : most->first;
         Piece piece;
         for (std::size_t c = 0; c < 4; ++c) piece[c] = corner(whole, split, kPieces[k][c]);
-        std::ranges::sort(piece, {}, &Corner::key);  // neighbours divide their common face alike
+        std::ranges::sort(piece, {}, &Corner::key);  // neighbours divide a shared face alike
         std::vector<Corner> own, others;
         for (const Corner& c : piece) ((c.dose >= 1.0) == is_gone ? own : others).push_back(c);
         const std::int32_t step = is_gone ? parted_step(*near[k], own[0].key) : -1;
@@ -286,7 +287,7 @@ class Divider {
     }
   }
 
-  /// The point of a tet next to a place: of those on its side of the border, if there are any.
+  /// The point of a tet nearest to a place: among those on the given side of the border, if there are any.
   [[nodiscard]] std::size_t nearest(TetId whole, const std::array<double, 4>& shares, bool is_gone) const {
     const Vec3 place = position_of({whole, shares}, whole_.mesh, whole_.mesh.vertices);
     const auto [first, last] = lattice_.points_of(whole);
@@ -302,8 +303,8 @@ class Divider {
     return found;
   }
 
-  /// When the tissue of a tet's places in the kerf went: by the point next to them, or the node that gives one its
-  /// dose.
+  /// The step in which tissue in the kerf parted: that of the point `near` it or, if this is not parted, of the parted
+  /// node nearest to `place`.
   [[nodiscard]] std::int32_t parted_step(std::size_t near, const Edge& place) const {
     if (state_.points.parted_step[near] >= 0) return state_.points.parted_step[near];
     const Points& rest = whole_.mesh.vertices;
@@ -320,13 +321,13 @@ class Divider {
     return cut;
   }
 
-  /// @param step  in which the piece went, unless its tet did before; -1: when that did.
+  /// @param step  in which the piece was removed, unless its tet was removed earlier; -1: it goes only with its tet.
   void add(Piece piece, TetId whole, TetId split, std::int32_t step) {
     std::array<Vec3, 4> at;
     for (std::size_t c = 0; c < 4; ++c) at[c] = {piece[c].shares[1], piece[c].shares[2], piece[c].shares[3]};
     if (signed_volume(at[0], at[1], at[2], at[3]) < 0.0) std::swap(piece[2], piece[3]);
     RemovalCause cause = RemovalCause::Dwell;
-    const auto removal = removals_.find(split);  // doses go on growing after it
+    const auto removal = removals_.find(split);  // doses still grow after the removal
     if (removal != removals_.end() && (step < 0 || removal->second->step < step)) {
       step = removal->second->step;
       cause = removal->second->cause;
@@ -361,12 +362,12 @@ class Divider {
   std::vector<std::uint8_t> on_skin_;                    // of each tet of the whole mesh
   std::unordered_set<std::uint64_t> halved_;             // edges of divided tets
   std::vector<std::vector<TetId>> copies_;               // of each tet of the whole mesh: itself and its copies
-  std::unordered_map<std::uint64_t, double> dose_;       // of edges
-  std::unordered_map<std::uint64_t, VertexId> between_;  // by numbers in the divided mesh
+  std::unordered_map<std::uint64_t, double> dose_;       // at vertices and middles of edges, by edge of the whole mesh
+  std::unordered_map<std::uint64_t, VertexId> between_;  // by the two vertices in the divided mesh
   DividedMesh mesh_;
 };
 
-/// After a cut by whole tets.
+/// The mesh of a cut by whole tets.
 DividedMesh undivided(const TissueModel& whole, const CutState& state) {
   DividedMesh mesh;
   mesh.tets = whole.mesh.tets;

@@ -7,18 +7,20 @@
 
 namespace incise {
 
-/// The dose of a cut by points between the nodes of its lattice, at rest.
+/// The dose of a cut by points as a function of the place at rest, interpolated between the nodes of the lattice.
 class DoseField {
  public:
-  /// What a dose counts for at most: where it is high on one side, the kerf's border does not move to the other node.
+  /// Higher doses count as this one. Otherwise a high dose on one side would shift the kerf's border to the node on the
+  /// other.
   static constexpr double kMostDose = 2.0;
 
-  /// Both are kept by reference.
+  /// Keeps a reference to `points`.
   DoseField(const PointLattice& lattice, const CutPoints& points);
 
-  /// Trilinear in the corners of a place's cell that are nodes of the tissue; where none is, 0.
+  /// Returns the dose at a place: trilinear between those corners of its cell that are nodes of the lattice; 0 if none
+  /// is.
   [[nodiscard]] double at(const Vec3& rest) const;
-  /// The step in which the nearest parted node went; nothing: none lies within 0.5 mm.
+  /// Returns the step in which the nearest parted node parted; nullopt: none lies within 0.5 mm.
   [[nodiscard]] std::optional<std::int32_t> parted_step_near(const Vec3& rest) const;
 
  private:

@@ -84,8 +84,7 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
   std::vector<std::int32_t> part;
   std::vector<TetId> loose;
 
-  // A part that became loose touches what has changed. The search in it ends as soon as it is known to be large or
-  // held.
+  // A part that became loose contains or borders on a changed tet. Its search ends as soon as it proves large or held.
   const auto search = [&](std::int32_t seed) {
     part.assign(1, seed);
     parts[static_cast<std::size_t>(seed)] = Part::Visited;
@@ -106,7 +105,7 @@ std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> 
       }
     }
     for (const std::int32_t tet : part) {
-      parts[static_cast<std::size_t>(tet)] = Part::Held;  // of a loose part, too: it is dealt with
+      parts[static_cast<std::size_t>(tet)] = Part::Held;  // also of a loose part, which needs no further search
       if (!is_held) loose.emplace_back(static_cast<std::size_t>(tet));
     }
   };

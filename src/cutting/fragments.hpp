@@ -9,24 +9,28 @@
 
 namespace incise {
 
-/// The tets that share a face with each. In a split mesh these may be several on one side: parts of one whole tet,
-/// which are no neighbours of each other.
+/// For each tet, the tets that share a face with it. In a split mesh several may share one face: parts of one whole
+/// tet, which are not neighbours of each other.
 struct FaceAdjacency {
-  std::vector<std::int32_t> start;  ///< tets + 1, into `tets`
-  std::vector<std::int32_t> tets;
+  std::vector<std::int32_t> start;  ///< M + 1: the first item of each tet in `tets`
+  std::vector<std::int32_t> tets;   ///< the neighbours of all tets, one tet after the other
+  /// Returns the neighbours of a tet.
   [[nodiscard]] std::span<const std::int32_t> of(std::size_t tet) const {
     const auto first = static_cast<std::size_t>(start[tet]), last = static_cast<std::size_t>(start[tet + 1]);
     return std::span(tets).subspan(first, last - first);
   }
 };
-/// O(M log M).
+/// Returns the face adjacency of a mesh. O(M log M).
 [[nodiscard]] FaceAdjacency face_adjacency(const TetMesh& mesh);
-/// Of a split mesh: `split` is split_mesh of the mesh that `whole` is of. O(M).
+/// Returns the face adjacency of a split mesh. O(M).
+/// @param split  split_mesh of the whole mesh.
+/// @param whole  adjacency of the whole mesh.
 [[nodiscard]] FaceAdjacency split_adjacency(const TetMesh& split, const MeshSplits& splits, const FaceAdjacency& whole);
 
-/// Live tets of face-connected parts that a change has cut off: parts that hold or border on a tet of `changed` (no
-/// longer live, or live with other corners), with less than `least_mm3` of rest volume, that touch no vertex for which
-/// `is_anchored` is set; ascending. Looks no farther than it takes to know: O(tets in `least_mm3`).
+/// Returns the live tets of loose fragments: face-connected parts that contain or border on a tet of `changed`, have
+/// less than `least_mm3` of rest volume, and touch no vertex with `is_anchored` set; ascending. Each search ends as
+/// soon as the answer is known: O(tets in `least_mm3`).
+/// @param changed  tets that are no longer live, or are live with other corners.
 [[nodiscard]] std::vector<TetId> loose_fragments(const TetMesh& mesh, std::span<const double> volumes_mm3,
                                                  const FaceAdjacency& neighbours, std::span<const std::uint8_t> is_live,
                                                  std::span<const std::uint8_t> is_anchored,

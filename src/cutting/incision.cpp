@@ -15,14 +15,14 @@
 namespace incise {
 namespace {
 
-constexpr double kRelaxedMm = 1e-3;         // the tissue counts as at rest when no vertex moves farther in a step
-constexpr double kSingleTolerance = 5e-2;   // of a step's residual: from here up a rounded matrix suffices
+constexpr double kRelaxedMm = 1e-3;         // the tissue counts as at rest if every vertex moves less in a step
+constexpr double kSingleTolerance = 5e-2;   // of a step's residual: from here up single precision suffices
 constexpr double kSingleBulkRatio = 500.0;  // λ/μ up to which it does
 constexpr double kUnsolvedShare = 0.01;     // of the steps: with more, the cut did not converge
-constexpr double kTimeRoundingS = 1e-9;     // the program counts as over when less than this is left of it
-constexpr double kLeastStepShare = 0.01;  // of a step: less than this at the program's end goes with the step before it
+constexpr double kTimeRoundingS = 1e-9;     // the program has ended when less than this remains
+constexpr double kLeastStepShare = 0.01;  // of a step: a shorter remainder of the program joins the step before it
 constexpr int kMaxRelaxationSteps = 60;   // after the tool is out
-constexpr int kStepsToTellFrom = 20;      // a run's duration is estimated from these
+constexpr int kStepsToTellFrom = 20;      // the duration of a run is estimated from so many steps
 
 void require_valid(const IncisionSettings& settings) {
   std::vector<Problem> violations = validate(settings.cut, 2.0 * radius_mm(settings.tool));
@@ -45,7 +45,7 @@ void require_valid(const IncisionSettings& settings) {
   require_none(violations);
 }
 
-/// Keeps frames evenly spaced over the cut, the first before it and the last after the tissue came to rest.
+/// Keeps frames evenly spaced over the cut: the first before it, the last at the end of the run.
 class FrameKeeper {
  public:
   FrameKeeper(int frames, double duration_s, std::vector<CutFrame>& kept)
@@ -97,7 +97,7 @@ Precision precision_for(const TissueModel& model, const CutSettings& cut) {
   return cut.residual_tolerance >= kSingleTolerance && !is_soft_in_shear ? Precision::Single : Precision::Double;
 }
 
-/// Takes an incision step by step to the end of its program and then to rest.
+/// Advances an incision step by step to the end of its program and then to rest.
 class IncisionRun {
  public:
   IncisionRun(const TissueModel& model, const TissueState& stretched, const ToolProgram& program,
@@ -114,7 +114,7 @@ class IncisionRun {
         frames_(settings.frames, program.duration_s(), progress.frames),
         earlier_wall_s_(progress.wall_s) {}
 
-  /// @returns Success when it was carried out, else how it ended.
+  /// @returns Success: the program was completed; otherwise Cancelled or NotConverged.
   Outcome run() {
     tell_size();
     while (is_tool_in()) {
@@ -159,15 +159,14 @@ class IncisionRun {
     return earlier_wall_s_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
-  /// Steps that the tool's program still takes.
+  /// The number of steps that the tool's program still takes.
   [[nodiscard]] int steps_left() const {
     const double left_s = std::max(0.0, program_.duration_s() - progress_.state.time_s);
     return static_cast<int>(std::ceil(left_s / settings_.cut.step_s() - kLeastStepShare));
   }
 
-  /// The program ends with a shorter step, but not with a sliver of one that rounding left over: mass over the step's
-  /// square and viscosity over the step would hold the tissue where it is, and nothing of the program is lost when the
-  /// step before goes that much farther.
+  /// The duration of the next step. The last step may be shorter, but it is never a sliver left over by rounding, in
+  /// which viscosity would hold the tissue in place: the step before it includes the sliver.
   [[nodiscard]] double next_step_s() const {
     const double left_s = program_.duration_s() - progress_.state.time_s;
     const double step_s = settings_.cut.step_s();
@@ -184,7 +183,7 @@ class IncisionRun {
                     steps_left(), kMaxRelaxationSteps - progress_.relaxation_steps, bytes / 1e6));
   }
 
-  /// Once a few steps have shown their pace.
+  /// Reports the estimated duration after kStepsToTellFrom steps.
   void tell_duration() const {
     if (progress_.state.step != first_step_ + kStepsToTellFrom) return;
     const double per_step_s = (wall_s() - earlier_wall_s_) / kStepsToTellFrom;
@@ -200,7 +199,7 @@ class IncisionRun {
     return report;
   }
 
-  /// Shows the progress where it can be put by, and tells whether to stop here.
+  /// Passes the progress to keep_ at a renewal step. @returns whether to stop here.
   bool is_to_stop() {
     const bool is_cancelled = monitor_.is_cancelled();
     if (!keep_) return is_cancelled;
@@ -225,7 +224,7 @@ class IncisionRun {
   int first_step_ = progress_.state.step;  // of this run
 };
 
-/// A step gives one frame at most.
+/// Warns if there are fewer frames than requested: each step gives at most one.
 void tell_missing_frames(const IncisionSettings& settings, Outcome outcome, const IncisionProgress& progress,
                          Monitor& monitor) {
   const std::size_t kept = progress.frames.size();
@@ -249,7 +248,7 @@ void sum_up(const std::vector<CutStepLog>& steps, IncisionResult& result) {
   }
 }
 
-/// A step that was not solved is put right by the next; many are not.
+/// The next step corrects one that was not solved, but too many of them spoil the cut.
 void judge_solves(IncisionResult& result, std::size_t steps, Monitor& monitor) {
   if (result.unconverged_steps == 0) return;
   monitor.message(Severity::Warning,
@@ -269,7 +268,7 @@ std::size_t count_inverted(const TetMesh& mesh, const TissueState& tissue) {
   return count;
 }
 
-/// Brings a frame to the split mesh of the cut's end: what came apart later moves with its original.
+/// Extends a frame to the split mesh at the end of the cut: vertices split off later have their originals' positions.
 void complete(CutFrame& frame, const TetMesh& whole, const MeshSplits& splits) {
   for (std::size_t v = frame.positions.size() - whole.vertices.size(); v < splits.vertices.size(); ++v)
     frame.positions.push_back(Vec3(frame.positions[splits.vertices[v].index()]));

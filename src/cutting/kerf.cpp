@@ -18,13 +18,13 @@ namespace incise {
 namespace {
 
 constexpr double kBeyondWallMm =
-    4.0;  // beside the mid-line, live tissue is looked for this far behind the kerf's mean wall, which is rough
+    4.0;  // the search for live tissue beside the mid-line ends this far behind the kerf's mean wall, which is rough
 
-/// Where the edge of a cut by points is read: of nodes that lie deeper than the body's border, at which the kerf is
+/// The layer in which the inner edge of a cut by points is read: nodes below the body's border, where the kerf is
 /// rounded.
 constexpr KerfMidlineSettings kEdgeLayer{.layer_top_mm = 0.2, .layer_bottom_mm = 0.8, .min_coverage = 0.5};
 
-/// The middle of what a ring runs round: the tumour if there is one, else the path.
+/// The middle of the tumour or, without one, of the path: a point inside the ring.
 Vec3 inside_of(const Contour& tumor_edge, const ToolPath& path) {
   return curve_centroid(tumor_edge.points.empty() ? entry_contour(path) : tumor_edge);
 }
@@ -48,7 +48,7 @@ KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, con
   return kerf;
 }
 
-/// Where material points of the stretched tissue lie after the cut.
+/// Returns the positions after the cut of a curve's material points in the stretched tissue.
 Contour carried(const Contour& curve, const std::function<std::optional<Vec3>(const Vec3&, double)>& place_after) {
   constexpr double kOnSkinMm = 0.5;  // points of a curve on the skin may lie this far outside the flat faces
   Contour moved{{}, curve.is_closed};
@@ -67,7 +67,7 @@ CutSurface cut_surface(const TetMesh& mesh, const TissueState& tissue, const Inc
   surface.vertices = tissue.positions;
   surface.approach = settings.approach;
   surface.inside_mm = inside;
-  // Both lists run by tet, then face: a face of the live skin is original where it stands in the uncut skin, too.
+  // Both lists are ordered by tet, then face. A face of the live skin is original if it is also in the uncut skin.
   const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
   auto original = uncut.begin();
   for (const BoundaryFace& face : boundary_faces(mesh, tissue.is_live)) {
@@ -91,7 +91,7 @@ void measure_midline(const KerfInput& kerf, const KerfMidlineSettings& midline_s
   result.gap_deg = midline.gap_deg;
 }
 
-/// Where the tumour edge lies after the cut, and the inner edge of a ring, with what has come apart in between.
+/// Measures the tumour edge after the cut, and the inner edge of a ring, for a cut by points.
 void measure_final_edges(const KerfInput& kerf, const PartedTissue& tissue, const ToolPath& path,
                          IncisionResult& result) {
   if (path.tumor_edge.points.size() < 3) return;
@@ -104,7 +104,7 @@ void measure_final_edges(const KerfInput& kerf, const PartedTissue& tissue, cons
                                         [&](const Vec3& p, double mm) { return tissue.displacement(p, mm); });
 }
 
-/// The same by whole tets.
+/// The same for a cut by whole tets.
 void measure_final_edges(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
                          const IncisionSettings& settings, double bridge_mm, IncisionResult& result) {
   if (path.tumor_edge.points.size() < 3) return;
@@ -153,7 +153,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
   const KerfInput kerf = kerf_input(model, stretched, path, settings, state.record, by_points ? &*by_points : nullptr);
   KerfMeasures& measures = result.kerf;
   measures.layers.resize(settings.layer_depths_mm.size());
-  // Each writes what no other reads; the slow ones stand apart, so that threads share them.
+  // No task reads what another writes. The slow measures are separate tasks, to share them among threads.
   std::vector<std::function<void()>> tasks{
       [&] { measure_midline(kerf, midline_settings, result); },
       [&] {
@@ -166,7 +166,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
       },
       [&] { measures.depth = depth_reached(kerf, path, settings); },
       [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, state); },
-      // A strip of tissue that the mid-line overlooks does not hold the plug either.
+      // Bridges too narrow to count for the mid-line do not hold the plug either.
       [&] {
         if (parted) return measure_final_edges(kerf, *parted, path, result);
         measure_final_edges(model, stretched, path, settings, midline_settings.closing_mm, result);

@@ -9,11 +9,11 @@
 namespace incise {
 namespace {
 
-constexpr double kOnSkinMm = 1.0;       // tissue that lies farther off does not tell where a curve on the skin went
-constexpr double kAcrossStepMm = 0.25;  // in which tissue is looked for across a gap, and how near it has to be
+constexpr double kOnSkinMm = 1.0;       // greatest distance of live tissue from a curve on the skin that it carries
+constexpr double kAcrossStepMm = 0.25;  // step of the search for tissue across a gap, and its tolerance
 constexpr double kDirectionMm =
-    2.0;  // to both sides: length that gives a mid-line's direction, free of the mesh's grain
-constexpr double kBelowSkinMm = 0.5;  // there, so that tets of the skin are met in their middle
+    2.0;  // to either side: length over which a mid-line's direction is taken, free of the mesh's grain
+constexpr double kBelowSkinMm = 0.5;  // depth of that search: within the tets of the skin
 
 /// The triangles with the vertices that they use, in order of first use.
 TriMesh with_own_vertices(std::span<const BoundaryFace> faces, std::span<const Vec3> positions) {
@@ -95,7 +95,7 @@ LiveDisplacement displacement_of_live(const TetMesh& mesh, std::span<const std::
 
 std::optional<Contour> carried_with_live(const Contour& curve, double reach_mm, const Vec3& approach,
                                          const TriMesh& surface, const LiveDisplacement& displacement) {
-  const SurfaceQuery skin(surface);  // uncut: the walk across the gap follows its slope
+  const SurfaceQuery skin(surface);  // uncut: the search across the gap follows its slope
   const auto first_across = [&](const Vec3& p, const Vec3& direction) -> std::optional<Vec3> {
     for (double s = 0.0; s <= reach_mm; s += kAcrossStepMm) {
       const auto seen = skin.seen_at(p + s * direction, approach);

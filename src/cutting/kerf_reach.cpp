@@ -17,13 +17,13 @@ Spread spread_of(std::span<const double> values) {
   return {std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()), *low, *high};
 }
 
-/// Least distances between the kerf and the tumour, sorted by where the kerf lies.
+/// Least distances between the kerf and the tumour: in all, beside and beneath the tumour.
 class Nearest {
  public:
   explicit Nearest(const Vec3& approach) : approach_(approach) {}
 
-  /// @param outward  from the tumour's surface to the kerf, or, where the kerf is within the tumour, from it to the
-  /// surface.
+  /// @param outward  from the tumour's surface to the kerf or, for a place of the kerf inside the tumour, from that
+  /// place to the surface.
   void add(const Vec3& outward, bool is_inside) {
     const double length = outward.norm();
     const double distance = is_inside ? -length : length;
@@ -44,7 +44,7 @@ class Nearest {
 
 namespace {
 
-/// Depth of the tool's tip below the path at points of the profile, along the approach: linear between waypoints.
+/// Planned depth of the tool's tip at the points of the profile, along the approach: linear between waypoints.
 std::vector<double> planned_along(const ToolPath& path, const DepthProfile& profile, const Vec3& approach) {
   const std::size_t n = path.waypoints.size();
   const auto depth_of = [&](std::size_t i) {
@@ -93,9 +93,9 @@ std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& 
     const bool is_inside = tumor_query.contains(p, approach);
     nearest.add(is_inside ? Vec3(-from_tumor) : from_tumor, is_inside);
   }
-  // The corners of the one against the faces of the other, both ways: a small tumour may face the middle of a wall.
+  // Corners of each surface against the faces of the other: a small tumour may face the middle of a wall.
   for (const Vec3& t : tumor.vertices) {
-    if (kerf_query.contains(t, approach)) continue;  // the kerf's corners have said so
+    if (kerf_query.contains(t, approach)) continue;  // the kerf's corners have shown this
     nearest.add(kerf_query.nearest(t).position_mm - t, false);
   }
   DeepMargin margin{nearest.nearest, nearest.beside, nearest.beneath, {}};

@@ -12,19 +12,23 @@
 
 namespace incise {
 
-/// Where a cut by points has left the tissue: beside its kerf, with the part to which the nearest point belongs that is
-/// not parted.
+/// The displacement of tissue by a cut by points. Near the kerf, a place moves with the tet of the nearest point that
+/// is not parted.
 class PartedTissue {
  public:
-  /// @param from  positions of the whole mesh in the configuration that places are given in, mm. Keeps references.
+  /// Keeps references to all arguments.
+  /// @param from  positions of the whole mesh's vertices in the configuration in which places are given, N x 3, mm.
   PartedTissue(const TissueModel& whole, std::span<const Vec3> from, const CutState& state);
 
-  /// From there to the state's. @param tolerance_mm  places may lie this far outside the body, and, in a tet that the
-  /// tool came near, from tissue that is not parted. @returns nullopt where there is none.
+  /// Returns the displacement of a place from that configuration to the state's, mm.
+  /// @param tolerance_mm  greatest distance of the place from the body and, in a tet near which the tool has come, from
+  ///                      a point that is not parted.
+  /// @returns nullopt if there is no such tissue.
   [[nodiscard]] std::optional<Vec3> displacement(const Vec3& p, double tolerance_mm) const;
 
-  /// Where a place lies then; one whose tissue is parted, with its nearest point. @returns nullopt outside the
-  /// body.
+  /// Returns the position of a place in the state, mm. A place without displacement() moves with the nearest point of
+  /// its tet, parted or not.
+  /// @returns nullopt farther than `tolerance_mm` from the body.
   [[nodiscard]] std::optional<Vec3> place_after(const Vec3& p, double tolerance_mm) const;
 
  private:

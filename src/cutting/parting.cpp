@@ -13,22 +13,22 @@
 namespace incise {
 namespace {
 
-// Points hang together up to the diagonal of a cell of the lattice.
+// Points are connected up to the diagonal of a cell of the lattice.
 constexpr double kLinkMm = 1.75 * PointLattice::kSpacingMm;
-// Points that are no nodes stand for a whole small or flat tet: the nearest across a face hang together up to this.
+// Points that are not nodes represent a whole small or flat tet. The nearest across a face are connected up to this.
 constexpr double kFarLinkMm = 1.0;
 
-/// Points of one tet that hang together.
+/// Connected points of one tet.
 struct Part {
-  std::size_t star;  // place of its tet among those that are looked at
+  std::size_t star;  // index of its tet in stars_
   std::vector<std::size_t> points;
 };
 
-/// A tet that may have come apart, or lies at a corner of one that may.
+/// A tet that may have come apart, or that shares a vertex with one that may.
 struct StarTet {
   TetId tet;
   std::size_t first_part = 0, last_part = 0;  // [first, last)
-  bool is_cut = false;                        // a point of it, or of another part of its whole tet, is parted
+  bool is_cut = false;                        // a point of it, or of another copy of its whole tet, is parted
   bool has_nodes = true;                      // its points are nodes of the lattice
 };
 
@@ -43,7 +43,7 @@ class Splitter {
   std::vector<TetId> run() {
     list_stars();
     find_parts();
-    DisjointSets corners(4 * parts_.size());  // 4 * part + corner: those that are one vertex
+    DisjointSets corners(4 * parts_.size());  // 4 * part + corner; the corners in one set share a vertex
     join_across_faces(corners);
     return apply(corners);
   }
@@ -52,8 +52,7 @@ class Splitter {
   [[nodiscard]] bool is_parted(std::size_t point) const { return state_.points.dose[point] >= 1.0; }
   [[nodiscard]] const Tet& corners_of_star(std::size_t s) const { return model_.mesh.tets[stars_[s].tet.index()]; }
 
-  /// The live tets that share a vertex with one in which points parted since it was looked at last, removed ones among
-  /// these.
+  /// Lists the live tets that share a vertex with a tet, live or removed, in which points parted since the last search.
   void list_stars() {
     std::set<TetId> changed;
     for (std::size_t i = 0; i < state_.points.parted_step.size(); ++i) {
@@ -74,7 +73,7 @@ class Splitter {
     for (const TetId tet : list) stars_.push_back({tet});
   }
 
-  /// The points of the stars that are not parted, and which of a tet hang together.
+  /// Finds the points of the stars that are not parted, and the connected parts of each tet.
   void find_parts() {
     std::vector<std::size_t> star_of;  // of each of left_
     for (std::size_t s = 0; s < stars_.size(); ++s) {
@@ -112,10 +111,11 @@ class Splitter {
     }
   }
 
-  /// A whole tet is one part, and so is one whose points are no nodes.
+  /// Whether the points of a tet may form several parts. A tet without parted points is one part, and so is a tet whose
+  /// points are not nodes.
   [[nodiscard]] static bool is_searched(const StarTet& star) { return star.is_cut && star.has_nodes; }
 
-  /// Calls `f` with the nodes next to one.
+  /// Calls `f` with the index in left_ of each node next to node `a`, itself included.
   template <class F>
   void for_each_neighbour(std::size_t a, const F& f) const {
     const PointLattice::Node& node = *lattice_.node_of(left_[a]);
@@ -184,7 +184,7 @@ class Splitter {
     return 4 * part + static_cast<std::size_t>(std::ranges::find(tet, v) - tet.begin());
   }
 
-  /// The vertex of each class of corners: of the first that comes, the one that all had; of others a copy.
+  /// Assigns a vertex to each set of corners: the first set at a vertex keeps it, each other set gets a copy.
   void name_vertices(DisjointSets& corners) {
     std::set<VertexId> kept;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
@@ -228,7 +228,7 @@ class Splitter {
     return touched;
   }
 
-  /// Gives each group of parts a tet of its own: the first the one that there was.
+  /// Gives each group of parts its own tet: the first group keeps the old one, the others get copies.
   void share_out(const StarTet& star, const std::vector<std::pair<Tet, std::vector<std::size_t>>>& groups,
                  std::vector<TetId>& touched) {
     std::vector<TetId> ids;
@@ -238,7 +238,7 @@ class Splitter {
     for (std::size_t i = begin; i < end; ++i) {
       if (lattice_.tet_of(i) == star.tet) own.push_back(i);
     }
-    for (const std::size_t i : own) {  // parted ones go with the nearest that is not
+    for (const std::size_t i : own) {  // a parted point moves with the nearest one that is not
       double least = std::numeric_limits<double>::infinity();
       for (std::size_t g = 0; g < groups.size(); ++g) {
         for (const std::size_t p : groups[g].second) {
@@ -313,7 +313,7 @@ class Splitter {
   std::vector<std::size_t> part_of_;  // of each of them
   std::unordered_map<PointLattice::Node, std::size_t, PointLattice::NodeHash> at_node_;  // place in left_
   std::vector<Part> parts_;
-  std::map<std::size_t, VertexId> vertex_of_;  // by the root of a class of corners
+  std::map<std::size_t, VertexId> vertex_of_;  // by the root of a set of corners
 };
 
 }  // namespace

@@ -9,16 +9,17 @@
 
 namespace incise {
 
-/// The kerf of a cut by points: where the dose, trilinear between the nodes of the lattice, is at least 1. Nodes
-/// outside the body, or that the tool did not come near, have none.
+/// The kerf of a cut by points: the tissue in which the dose, interpolated between the nodes of the lattice, is at
+/// least 1. Nodes outside the body, and nodes near which the tool has not come, have a dose of 0.
 class PointKerf {
  public:
-  /// @param positions  of the configuration in which the kerf is looked at, mm.
+  /// Keeps references to all arguments.
+  /// @param positions  of the whole mesh's vertices in the configuration in which the kerf is measured, N x 3, mm.
   PointKerf(const TissueModel& model, const CutPoints& points, std::span<const Vec3> positions);
 
-  /// The kerf in tets, cut where the dose is 1 on their edges.
+  /// Returns the kerf as tets, clipped at dose 1, mm.
   [[nodiscard]] std::vector<std::array<Vec3, 4>> tets() const;
-  /// Its surface, closed.
+  /// Returns the closed surface of the kerf, mm.
   [[nodiscard]] TriMesh surface() const;
 
  private:
@@ -32,7 +33,8 @@ class PointKerf {
     std::array<double, 8> doses;
     std::array<Vec3, 8> at;
   };
-  /// The eight corners of a cell, x fastest; those that are not known are displaced as the others on average.
+  /// The eight corners of a cell, x fastest. Corners that are not nodes of the tissue take the mean displacement of the
+  /// others.
   [[nodiscard]] Cell cell(const PointLattice::Node& low) const;
 
   const TissueModel& model_;

@@ -10,10 +10,10 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kLeastNodes = 4;  // of a tet, for them to stand for its volume
-// Off any plane on which meshes of blocks have their faces: no node lies on one.
+constexpr std::size_t kLeastNodes = 4;  // of a tet, for them to represent its volume
+// Off the planes in which meshes of blocks have their faces, so no node lies on a face.
 const Vec3 kOriginMm(0.0371, 0.0613, 0.0887);
-// The points of the quadrature of degree 2 with four points: (5 + 3 √5)/20 and (5 − √5)/20.
+// Four-point quadrature of degree 2: (5 + 3 √5)/20 and (5 − √5)/20.
 constexpr double kNear = 0.5854101966249685, kFar = 0.1381966011250105;
 
 }  // namespace

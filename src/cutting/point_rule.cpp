@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::size_t kTetsPerChunk = 16;
 
-/// How strongly the tool acts at a distance from its core: (1 − s²/R²)², 0 from R on.
+/// The kernel at a distance s from the core: (1 − s²/R²)², 0 from R on.
 double kernel(double distance_mm, double radius_mm) {
   const double q = 1.0 - distance_mm * distance_mm / (radius_mm * radius_mm);
   return q > 0.0 ? q * q : 0.0;
 }
 
-/// Of the reference tissue. The kernel's integral along a line through the axis is 16 R / 15: a point there that does
-/// not move gets the dose dose_length / (v d τ0).
+/// Dose per second of a point of the reference tissue. The kernel's integral along a line through the axis is
+/// 16 R / 15, so at the reference energy a fixed point on that line gets the dose dose_length / (v d τ0).
 double dose_rate_per_s(const CutSettings& settings, double distance_mm) {
   const double radius = settings.kernel_radius_mm;
   return settings.dwell_rate_per_s() * 15.0 * settings.dose_length_mm / (16.0 * radius) * kernel(distance_mm, radius);
@@ -48,7 +48,7 @@ PointHold hold_points(const TissueModel& model, const CutSettings& settings, con
   PointHold hold;
   hold.directions = held_directions(tool, next);
   hold.tets.resize(candidates.size());
-  // A hold is limited by what the tissue beneath it resists while it lasts.
+  // The resistance of the tissue beneath it, over the duration of a hold, limits the hold.
   const double stiffer = shear_ratio(model.material, settings.tissue_s(1.0 / settings.dwell_rate_per_s()));
   workers.for_each(candidates.size(), kTetsPerChunk, [&](std::size_t c) {
     HeldTet& held = hold.tets[c];
@@ -61,7 +61,7 @@ PointHold hold_points(const TissueModel& model, const CutSettings& settings, con
       if (lattice.tet_of(i) != held.tet || state.points.is_held[i] == 0 || state.points.dose[i] >= 1.0) continue;
       const Vec3 p = lattice.position(i, state.tissue.positions);
       const double distance = distance_to_core(p, core);
-      // The hold is that of the middle of the step, as far as the dose is concerned.
+      // The hold weakens with the dose: that in the middle of the step counts.
       const double left = 1.0 - state.points.dose[i] - 0.5 * step_s * dose_rate_per_s(settings, distance) / toughness;
       if (left <= 0.0) continue;
       const double stiffness_mn_mm =

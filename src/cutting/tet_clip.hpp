@@ -5,10 +5,11 @@
 
 namespace incise {
 
-/// The part of a tet on one side of a border that crosses each edge once, in tets. Two tets that share a face divide it
-/// alike where both give its corners in one order.
-/// @param own, others  its corners on that side, and beyond the border. @param cut  cut(a, b): where the border crosses
-/// the edge from a to b. @param add  is given the tets.
+/// Divides the part of a tet on one side of a border into tets. The border crosses each edge at most once. Two tets
+/// that share a face divide it in the same way if both give the face's corners in the same order.
+/// @param own, others  the tet's corners on that side, and beyond the border.
+/// @param cut          cut(a, b) returns the corner at which the border crosses the edge from a to b.
+/// @param add          add(tet) receives each tet, four corners.
 template <class Corner, class Cut, class Add>
 void clip_tet(const std::vector<Corner>& own, const std::vector<Corner>& others, const Cut& cut, const Add& add) {
   const auto add_prism = [&](const std::array<Corner, 3>& a, const std::array<Corner, 3>& b) {

@@ -12,26 +12,28 @@ namespace incise {
 namespace {
 
 constexpr double kAbsoluteZeroC = -273.15;
-constexpr double kLeastDamageC = 45.0;  // below it tissue takes hours to be damaged [Pearce2010]: no temperature tells where
-constexpr double kLeastRiseK = 5.0;     // above the body: towards 0 the half width grows without bounds
+constexpr double kLeastDamageC = 45.0;  // below it damage takes hours [Pearce2010]: temperature alone does not decide
+constexpr double kLeastRiseK = 5.0;     // above the body: towards 0 the half width grows without bound
 constexpr double kLeastRadius = 1e-12;     // in units of 2 a / v
-constexpr double kSeriesFrom = 40.0;       // from here the asymptotic series holds to all digits, and K itself nears underflow
+constexpr double kSeriesFrom = 40.0;       // from here the asymptotic series is exact to all digits, while K itself
+                                           // approaches underflow
 constexpr int kSeriesTerms = 20;
 constexpr int kMaxDoublings = 1000;
 constexpr int kMaxBisections = 200;
 
-/// K₀ and K₁ at one radius, as far as the hottest moment asks for them.
+/// The functions of K₀ and K₁ at one radius that the hottest moment requires.
 struct Bessel {
-  double log_k0;  ///< of e^R K₀(R)
+  double log_k0;  ///< logarithm of e^R K₀(R)
   double lead;    ///< 1 − K₀(R) / K₁(R), > 0
 };
 
-/// Asymptotic series of e^R √(2 R / π) K_n(R) = 1 + Σ a_j(n) / R^j, a_j(n) = Π_{i ≤ j} (4 n² − (2 i − 1)²) / (8 i) (DLMF, 10.40.2).
+/// Asymptotic series of e^R √(2 R / π) K_n(R) = 1 + Σ a_j(n) / R^j, a_j(n) = Π_{i ≤ j} (4 n² − (2 i − 1)²) / (8 i)
+/// (DLMF, 10.40.2).
 Bessel bessel_far(double radius) {
   double zeroth = 1.0;
   double term0 = 1.0;
   double term1 = 1.0;
-  double more = 0.0;  // of the series for K₁ beyond that for K₀, summed without its leading 1
+  double more = 0.0;  // series for K₁ minus series for K₀, summed without their leading 1
   for (int j = 1; j <= kSeriesTerms; ++j) {
     const double odd = (2.0 * j - 1.0) * (2.0 * j - 1.0);
     term0 *= -odd / (8.0 * j * radius);
@@ -48,20 +50,20 @@ Bessel bessel(double radius) {
   return {std::log(k0) + radius, 1.0 - k0 / std::cyl_bessel_k(1.0, radius)};
 }
 
-/// Where tissue is hottest, the source has passed by −x = R K₀(R) / K₁(R) (lengths in units of 2 a / v).
-/// Logarithm of exp(−x) K₀(R) there; falls as R grows.
+/// Logarithm of exp(−x) K₀(R) where tissue is hottest: at −x = R K₀(R) / K₁(R) behind the source (lengths in units of
+/// 2 a / v). Falls as R grows.
 double log_peak(double radius) {
   const Bessel b = bessel(radius);
   return b.log_k0 - radius * b.lead;
 }
 
-/// The lateral distance that belongs to R: √(R² − x²).
+/// The lateral distance for R: √(R² − x²).
 double lateral(double radius) {
   const double lead = bessel(radius).lead;
   return radius * std::sqrt(lead * (2.0 - lead));
 }
 
-/// R at which log_peak is `level`; none: it lies below kLeastRadius.
+/// The R at which log_peak is `level`; nullopt: it lies below kLeastRadius.
 std::optional<double> radius_of(double level) {
   double low = kLeastRadius;
   if (log_peak(low) <= level) return std::nullopt;

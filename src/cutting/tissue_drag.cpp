@@ -8,9 +8,9 @@
 namespace incise {
 namespace {
 
-constexpr int kHalvings = 60;  // of the time in which a phase's end is searched: to rounding
+constexpr int kHalvings = 60;  // of the interval in which a phase's end is searched: to rounding
 
-/// The tool's course as lag and drift see it: how far the tip has gone along the path, and which way it goes.
+/// The tool's course for lag and drift: travel of the tip along the path, and its direction.
 class Course {
  public:
   Course(const ToolPath& path, const IncisionSettings& settings)
@@ -27,8 +27,8 @@ class Course {
     return program_.way_mm_at(on_path(time_s)) - program_.way_mm_at(begin_s_);
   }
 
-  /// Unit direction of the tip's motion at a time: while it plunges, that in which it sets out; once it stands, that in
-  /// which it came. nullopt if the tip does not move.
+  /// Unit direction of the tip's motion at a time. During the plunge: the direction in which it then sets out; during
+  /// the dwell: the direction in which it arrived. nullopt if the tip does not move.
   [[nodiscard]] std::optional<Vec3> direction(double time_s) const {
     for (double span = least_span_s_; span < 2.0 * (end_s_ - begin_s_); span *= 2.0) {
       const Vec3 moved =
@@ -37,7 +37,7 @@ class Course {
     }
     return std::nullopt;
   }
-  /// Unit vector across the course in the picture plane, the way in which drift counts positive.
+  /// Unit vector perpendicular to the course, in the plane across the approach, in the direction of positive drift.
   [[nodiscard]] Vec3 across(const Vec3& direction, const Vec3& approach) const {
     return to_the_right_ * approach.cross(direction).stableNormalized();
   }
@@ -58,12 +58,12 @@ class Course {
 
   ToolProgram program_;
   double least_span_s_;
-  double begin_s_;  // the tip leaves the first waypoint
-  double end_s_;    // and stands
+  double begin_s_;  // when the tip leaves the first waypoint
+  double end_s_;    // when it stops
   double to_the_right_ = 1.0;
 };
 
-/// Sum of what went in one step, weighted by rest volume.
+/// Sums over the tissue that was cut in one step.
 struct StepSum {
   double time_s = 0.0;
   double volume_mm3 = 0.0;
@@ -85,7 +85,7 @@ Spread weighted_spread(std::span<const double> values, std::span<const double> w
 
 namespace {
 
-/// What went in each step, by its number.
+/// Sums over the tissue that was cut in each step, by the step's number.
 std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> stretched,
                                const IncisionSettings& settings, const CutState& state) {
   std::map<int, StepSum> sums;
@@ -102,7 +102,7 @@ std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> s
     return sums;
   }
   for (const Removal& removal : state.record.removals) {
-    if (removal.cause == RemovalCause::LooseFragment) continue;  // it went with its surroundings, not with the tool
+    if (removal.cause == RemovalCause::LooseFragment) continue;  // it moved with its surroundings, not with the tool
     Vec3 place = Vec3::Zero();
     for (const VertexId v : model.mesh.tets[removal.tet.index()]) place += 0.25 * stretched[v.index()];
     StepSum& step = sums[removal.step];

@@ -6,7 +6,7 @@
 namespace incise {
 namespace {
 
-constexpr double kAlongAxis = 1e-9;  // of a unit direction across the axis: below, it lies along the axis
+constexpr double kAlongAxis = 1e-9;  // component perpendicular to the axis below which a direction lies along it
 
 double radius(const Needle& needle) { return needle.radius_mm(); }
 double radius(const Blade& blade) { return 0.5 * blade.thickness_mm; }
@@ -27,7 +27,9 @@ void list_violations(const Ball& ball, const Expect& expect) {
   expect(ball.diameter_mm > 0.0, "diameter_mm", ball.diameter_mm, "a diameter above 0 mm");
 }
 
-/// A dimension of the tool; null: it has none of that name. @throws as Visitor::refuse where one is given all the same.
+/// Describes a dimension of the tool.
+/// @param value  null: the tool has no such dimension.
+/// @throws as Visitor::refuse if a file gives such a dimension.
 void dimension(Visitor& v, std::string_view tool, const Field& field, double* value, const Range& range) {
   if (value != nullptr) return v(field, *value, range);
   std::optional<double> none;

@@ -9,19 +9,20 @@
 namespace incise {
 namespace {
 
-constexpr double kMovesAlong = 1e-6;  // of a way across the axis: below, the tool is led along its axis
+constexpr double kMovesAlong = 1e-6;  // share of a move across the axis below which the tool moves along its axis
 
 ToolPose pose_of(const Waypoint& waypoint, const Vec3& heading) {
   return {waypoint.position_mm + waypoint.depth_mm * waypoint.axis, waypoint.axis, heading_across(heading, waypoint.axis)};
 }
 
-/// How far a tool goes from one pose to another: the way of its tip or, where only its axis turns, that of the point `depth_mm` behind the tip.
+/// Travel of a tool between two poses, mm: the way of its tip or, if only its axis turns, the way of the point
+/// `depth_mm` behind the tip.
 double travel_mm(const ToolPose& from, const ToolPose& to, double depth_mm) {
   const double tip = (to.tip_mm - from.tip_mm).norm();
   return tip > 0.0 ? tip : depth_mm * (to.axis - from.axis).norm();
 }
 
-/// The direction in which a tool is led that goes from one tip to another; it keeps its heading where it goes along its axis.
+/// The heading of a tool whose tip moves from one place to another; along its axis it keeps the given heading.
 Vec3 led_along(const Vec3& from_tip, const Vec3& to_tip, const Vec3& axis, const Vec3& heading) {
   const Vec3 way = to_tip - from_tip;
   const double across = (way - axis.dot(way) * axis).norm();
@@ -64,7 +65,7 @@ ToolProgram::ToolProgram(const ToolPath& path, const CutSettings& settings, cons
   const Vec3 ahead = led_along(pose_of(first, any).tip_mm, second_tip, first.axis, any);
   keys_.push_back({0.0, {first.position_mm, first.axis, ahead}, Phase::Plunge});
 
-  // A tool turns into the direction of its next move before it makes it; what is round about its axis needs no time for that.
+  // A tool turns into the direction of a move before it moves; one that is round about its axis needs no time for it.
   const auto turn_to = [&](const Vec3& heading, Phase phase) {
     const ToolPose from = keys_.back().pose;
     const double distance = half_width_mm(tool) * std::abs(turn_rad(from.heading, heading, from.axis));

@@ -15,14 +15,14 @@ void require_finite(const PrintedNumber& number, const std::string& name) {
                  fmt::format("a number of \"{}\" is not finite", name));
 }
 
-/// [BhatiaDavis2000], for the sample variance.
+/// Greatest possible sd [BhatiaDavis2000], for the sample variance.
 double greatest_sd(const PrintedGroup& group, double bottom, double top, const AuditSettings& settings) {
-  if (group.n == 1U) return 0.0;  // one value does not stray from itself
+  if (group.n == 1U) return 0.0;  // one value has no spread
   const auto n = static_cast<double>(count_of(group, settings));
   return std::sqrt(n / (n - 1.0) * greatest_product(bottom, top, low(group.mean), high(group.mean)));
 }
 
-/// Rules that need to know how many values there were.
+/// Checks the rules that need the number of values.
 void check_counted(const PrintedGroup& group, const AuditSettings& settings, std::vector<Finding>& findings) {
   const auto n = static_cast<double>(*group.n);
   if (settings.grain) {
@@ -62,7 +62,7 @@ void check_group(const PrintedGroup& group, const std::optional<PrintedNumber>& 
   if (group.min && low(*group.min) > high(group.mean) + kSlack) {
     find(AuditRule::MinAboveMean, group.min->value, high(group.mean));
   }
-  // Bounds on the spread mean nothing round a mean that is itself impossible.
+  // Bounds on the spread have no meaning if the mean itself is impossible.
   if (findings.size() > before) return;
   if (max && group.sd) {
     const double bottom = group.min ? std::max(settings.least, low(*group.min)) : settings.least;
@@ -75,7 +75,7 @@ void check_group(const PrintedGroup& group, const std::optional<PrintedNumber>& 
 void note_unchecked(const PrintedGroup& group, const std::optional<PrintedNumber>& max, const AuditSettings& settings,
                     AuditedRow& row) {
   const auto note = [&](AuditRule rule, const char* needs) { row.not_checkable.push_back({rule, group.name, needs}); };
-  // The sd of one value is 0 by definition: where it is not printed, nothing can be wrong with it.
+  // The sd of one value is 0 by definition: if it is not printed, there is nothing to check.
   const bool has_sd_to_check = group.sd || group.n != 1U;
   if (has_sd_to_check && (!max || !group.sd)) note(AuditRule::SdTooLarge, group.sd ? "max" : "sd");
   const bool is_bare = !group.n || !group.max;
@@ -96,7 +96,7 @@ void check_score(const PrintedRow& row, const BaselineRange& baseline_mm, std::v
   if (!score) return;
   const BaselineRange own = baseline_range(*score);
   if (own.low_mm <= baseline_mm.high_mm && own.high_mm >= baseline_mm.low_mm) return;
-  // The per cent nearest to the printed one that mean, max and the baseline could give.
+  // The per cent nearest to the printed one that follows from mean, max and the baseline.
   const bool is_high = own.low_mm > baseline_mm.high_mm;
   const double baseline = is_high ? baseline_mm.high_mm : baseline_mm.low_mm;
   const double edge = is_high ? own.low_mm * (score->percent.value + score->percent.half_unit)

@@ -31,7 +31,7 @@ double flat_top(double share) {
   return share <= 0.5 ? 1.0 : share <= 1.0 ? 2.0 * (1.0 - share) : 0.0;
 }
 
-/// Rounded block length. The autocorrelation counts as gone once it stays within 2 √(log10 n / n) for `run` lags.
+/// Rounded block length. The autocorrelation counts as 0 once it stays within 2 √(log10 n / n) for `run` lags.
 std::size_t block_length(const ContourValues& contour, double mean) {
   const std::size_t n = contour.values.size();
   const auto count = static_cast<double>(n);
@@ -40,7 +40,7 @@ std::size_t block_length(const ContourValues& contour, double mean) {
   const auto searched = std::min(furthest, static_cast<std::size_t>(std::ceil(std::sqrt(count))) + run);
   const std::vector<double> covariance = autocovariance(contour, mean, std::min(furthest, 2 * searched));
   const double border = 2.0 * std::sqrt(std::log10(count) / count) * covariance[0];
-  std::size_t gone = searched;  // correlated as far as one looks, unless a run is found
+  std::size_t gone = searched;  // correlated over all searched lags, unless a run is found
   for (std::size_t lag = 0; lag + run <= searched; ++lag) {
     const auto first = covariance.begin() + static_cast<std::ptrdiff_t>(lag) + 1;
     if (std::all_of(first, first + static_cast<std::ptrdiff_t>(run), [&](double c) { return std::abs(c) < border; })) {
@@ -58,14 +58,14 @@ std::size_t block_length(const ContourValues& contour, double mean) {
     slope += weight * static_cast<double>(lag);
   }
   const double longest = std::ceil(std::min(3.0 * std::sqrt(count), count / 3.0));
-  // The window may leave a spectrum that is not positive, or none of its slope: then the correlation is too long to
-  // be measured on this contour, and the longest block is the honest one.
+  // With the window, the spectrum may be 0 or negative. Then the correlation is too long to measure on this contour, so
+  // the longest block is used.
   if (!(spectrum > 0.0)) return static_cast<std::size_t>(longest);
   const double wanted = std::cbrt(1.5 * slope * slope / (spectrum * spectrum) * count);
   return static_cast<std::size_t>(std::clamp(std::round(wanted), 1.0, longest));
 }
 
-/// Sums of the blocks that start at each point and wrap round.
+/// Sums of the blocks, one starting at each point, which wrap round.
 std::vector<double> block_sums(const std::vector<double>& values, std::size_t block) {
   const std::size_t n = values.size();
   std::vector<double> sums(n, 0.0);
@@ -78,10 +78,10 @@ std::vector<double> block_sums(const std::vector<double>& values, std::size_t bl
 void require_contour(const ContourValues& contour) {
   INCISE_REQUIRE(contour.values.size() >= 3,
                  fmt::format("found {} values on a contour, expected at least 3", contour.values.size()));
-  static_cast<void>(summarize(contour.values));  // refuses what is not finite
+  static_cast<void>(summarize(contour.values));  // throws for values that are not finite
 }
 
-/// A contour ready to be drawn anew: whole blocks, and one shorter block that fills up what is left.
+/// A contour prepared for redrawing: whole blocks, and one shorter block for the remaining points.
 struct Drawer {
   std::vector<double> whole;
   std::vector<double> rest;

@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-/// One side of the comparison in the shapes that the tests ask for.
+/// One side of the comparison, in the forms that the tests need.
 struct ComparedSide {
   std::vector<ContourValues> contours;
   std::vector<double> pooled;
@@ -32,7 +32,7 @@ ComparedSide side_of(std::span<const MeasuredSpecimen> specimens, ErrorMeasure m
     row.error_mm = moments_of(contour.values);
     row.correlation = contour_correlation(contour);
     side.means.push_back(row.error_mm.mean);
-    // A contour without spread tells one number.
+    // A contour without spread counts as one independent value.
     side.n_effective += row.correlation.n_effective.value_or(1.0);
     side.pooled.insert(side.pooled.end(), contour.values.begin(), contour.values.end());
     side.contours.push_back(std::move(contour));

@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-/// More points than any contour needs; keeps a tiny step from exhausting memory.
+/// More points than any contour needs; a tiny step must not exhaust the memory.
 constexpr double kMostPoints = 1e6;
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace incise {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-/// Angle between the end of one segment and the start of the next that is only rounding.
+/// Gaps between segments up to this angle, rad, are only rounding.
 constexpr double kSeam = 1e-9;
 
 std::vector<Vec2> flat_points(const Contour& contour, const Vec3& approach) {

@@ -20,7 +20,7 @@ double lower_tail(double df, double shift, double t) {
   return cdf(boost::math::non_central_t(df, shift), t);
 }
 
-/// The noncentrality for which the observed t has the given lower tail; that tail falls as the shift grows.
+/// The noncentrality for which the observed t has the given lower tail, which falls as the noncentrality grows.
 double shift_with_tail(double df, double t, double tail) {
   double low = t - 1.0;
   double high = t + 1.0;
@@ -33,14 +33,14 @@ double shift_with_tail(double df, double t, double tail) {
   return 0.5 * (low + high);
 }
 
-/// Removes the bias of d for few values.
+/// Factor that removes the bias of d for few values.
 double small_sample_factor(double df) {
   return std::exp(std::lgamma(0.5 * df) - std::lgamma(0.5 * (df - 1.0))) / std::sqrt(0.5 * df);
 }
 
 /// @param per_d  t = d * per_d
 std::optional<EffectSize> effect_of(const TTest& test, double per_d, double level) {
-  // Beyond this t the noncentral distribution has left double precision, and there is nothing to doubt.
+  // Beyond this t, the noncentral distribution cannot be computed in double precision, and the effect is beyond doubt.
   constexpr double kFarthestT = 300.0;
   if (!test.t || !test.df || *test.df < 2.0 || std::abs(*test.t) > kFarthestT) return std::nullopt;
   EffectSize effect;
@@ -71,11 +71,11 @@ double t_test_power(double effect, std::size_t n, TestDesign design, double alph
   INCISE_REQUIRE(alpha > 0.0 && alpha < 1.0, fmt::format("found alpha = {}, expected one in (0, 1)", alpha));
   const auto count = static_cast<double>(n);
   const double df = design == TestDesign::Paired ? count - 1.0 : 2.0 * count - 2.0;
-  // A test of both tails does not care which way the effect points.
+  // For a two-tailed test, the sign of the effect does not matter.
   const double shift = std::abs(effect) * std::sqrt(design == TestDesign::Paired ? count : 0.5 * count);
   const double border = boost::math::quantile(complement(boost::math::students_t(df), 0.5 * alpha));
   if (shift == 0.0) return alpha;
-  // So far out that the series of the noncentral distribution loses its digits: the power differs from 1 by nothing.
+  // So far out, the series of the noncentral distribution loses its digits, and the power is 1 to rounding.
   if (shift > border + 40.0) return 1.0;
   const boost::math::non_central_t distribution(df, shift);
   return cdf(complement(distribution, border)) + cdf(distribution, -border);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kProfileStepMm = 0.1;
 
-/// As the camera sees it: heights taken out.
+/// The contour as the camera sees it, without heights.
 Contour flat_in_view(const Contour& contour, const ViewFrame& view) {
   Contour flat{.points = {}, .is_closed = contour.is_closed};
   for (const Vec3& p : contour.points) {
@@ -23,7 +23,7 @@ Contour flat_in_view(const Contour& contour, const ViewFrame& view) {
   return flat;
 }
 
-/// Sectors of equal angle about the tumour edge's middle, as the camera sees them.
+/// Sectors of equal angle about the middle of the tumour edge, as the camera sees them.
 class SectorRing {
  public:
   SectorRing(const Contour& flat_edge, const ViewFrame& view, const ProfileSettings& settings)
@@ -34,7 +34,7 @@ class SectorRing {
     first_ = std::atan2(start.y(), start.x()) / (2.0 * std::numbers::pi) + settings.turn_deg / 360.0;
   }
 
-  /// Where a place lies, in sectors from the middle of the first one: [0, sectors].
+  /// Direction of a place, in sectors from the middle of the first sector: [0, sectors].
   [[nodiscard]] double place_of(const Vec3& seen) const {
     const Vec3 out = seen - middle_;
     const double turn = std::atan2(out.y(), out.x()) / (2.0 * std::numbers::pi) - first_;
@@ -47,7 +47,7 @@ class SectorRing {
   double first_ = 0.0;
 };
 
-/// Mean of each sector; nothing where one is empty.
+/// Mean of each sector; nothing if a sector is empty.
 std::optional<std::vector<double>> means_of(const SectorRing& ring, const Points& seen, std::span<const double> values,
                                             std::size_t sectors) {
   std::vector<double> sums(sectors, 0.0);

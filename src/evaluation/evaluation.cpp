@@ -21,12 +21,12 @@ std::vector<double> magnitudes(const std::vector<double>& values, double referen
   return result;
 }
 
-/// What the electrode's half width takes off the tissue that a measured contour leaves beside the tumour.
+/// Tissue that half the kerf's width removes on the tumour's side of the measured contour.
 double kerf_allowance_mm(const EvaluationSettings& settings) {
   return settings.contour == ContourKind::Centerline ? settings.electrode_radius_mm : 0.0;
 }
 
-/// Least tissue between the contour and the tumour edge: between polylines that do not meet it is found at a corner of
+/// Least distance between the contour and the tumour edge. Two polylines that do not meet are nearest at a corner of
 /// one of them.
 double least_distance_mm(const Contour& incision, const Contour& edge, const std::vector<double>& signed_distances) {
   double least = *std::min_element(signed_distances.begin(), signed_distances.end());
@@ -64,7 +64,7 @@ void measure_errors(const EvaluationSettings& settings, Evaluation& result) {
   result.paper_success = result.closed_loop.value() && paper.max <= paper_target;
 }
 
-/// Where on the clock face the errors lie.
+/// Measures errors by clock position.
 void measure_clock(const Vec2& center, const EvaluationSettings& settings, Evaluation& result) {
   const ViewFrame view = view_along(settings.approach);
   const Vec3 middle = view.from_view({center.x(), center.y(), 0.0});
@@ -127,7 +127,7 @@ Evaluation evaluate(const std::optional<Contour>& incision, const Contour& tumor
   result.closed_loop = incision.has_value() && incision->is_closed;
   result.outcome = Outcome::OpenLoop;
   if (!incision) {
-    // The edge alone still tells what a perfect cut would score.
+    // The score of a perfect cut needs only the edge.
     measure_shape(Contour{.points = {}, .is_closed = false}, tumor_edge, settings, result);
     return result;
   }
@@ -141,8 +141,8 @@ Evaluation evaluate(const std::optional<Contour>& incision, const Contour& tumor
 
   const double least = least_distance_mm(*incision, tumor_edge, result.errors.signed_distance_mm);
   const bool is_clear = least > kerf_allowance_mm(settings) && !meet_in_view(*incision, tumor_edge, settings.approach);
-  // A closed ring beside the tumour is clear of it, too, but leaves it in the patient. As the two do not meet, one
-  // point tells.
+  // A closed ring beside the tumour is clear of it, too, but leaves it in the patient. If the two do not meet, one
+  // point of the edge shows whether the ring encloses it.
   const bool is_around = !incision->is_closed || contains_in_view(*incision, tumor_edge.points[0], settings.approach);
   result.negative_margin = is_clear && is_around;
   if (*result.closed_loop) result.outcome = *result.negative_margin ? Outcome::Success : Outcome::PositiveMargin;

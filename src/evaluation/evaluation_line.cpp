@@ -9,9 +9,9 @@
 namespace incise {
 namespace {
 
-/// A point of the incision seen from the intended line.
+/// Position of a point of the incision relative to the intended line.
 struct Abreast {
-  double along_mm = 0.0;    ///< arc length of its foot point; below 0 or above the length when it lies beyond an end
+  double along_mm = 0.0;    ///< arc length of its foot point; below 0 or above the length if it lies beyond an end
   double lateral_mm = 0.0;  ///< signed, positive = left
 };
 
@@ -37,7 +37,7 @@ Abreast place(const Vec3& p, const Contour& line, const std::vector<double>& arc
   double along = arc[foot.segment] + foot.fraction * (arc[foot.segment + 1] - arc[foot.segment]);
   Vec3 course = tangent;
   if (foot.fraction == 1.0 && foot.segment < last) {
-    course += direction_of(line, foot.segment + 1);  // at a corner one side's tangent alone can point either way
+    course += direction_of(line, foot.segment + 1);  // at a corner, one segment alone may give the wrong side
   } else if (foot.fraction == 0.0 && foot.segment > 0) {
     course += direction_of(line, foot.segment - 1);
   } else if (foot.fraction == 0.0 || foot.fraction == 1.0) {

@@ -13,10 +13,10 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kLeastReplicates = 99;
-/// Of clusters of which few hold both kinds, this many draws are made for each replicate at most.
+/// Greatest number of draws for each replicate. Draws that lack one kind are repeated.
 constexpr int kMostDrawsPerReplicate = 20;
 
-/// Share of the pairs in which the event's score is the higher one, equal ones counted as halves. Both sorted.
+/// Share of the pairs in which the score with the event is the higher one; equal scores count as half. @pre both sorted
 double area_of(const std::vector<double>& happened, const std::vector<double>& did_not) {
   double sum = 0.0;
   for (const double score : happened) {
@@ -56,7 +56,7 @@ std::vector<RocPoint> points_of(const std::vector<double>& happened, const std::
   return points;
 }
 
-/// Scores of what happened and of what did not.
+/// Scores of forecasts whose event happened, and of the others.
 struct Scores {
   std::vector<double> happened, did_not;
   void add(const Forecast& forecast) { (forecast.happened ? happened : did_not).push_back(forecast.said); }
@@ -75,7 +75,7 @@ std::vector<std::vector<Forecast>> by_cluster(std::span<const Forecast> forecast
   return list;
 }
 
-/// Areas of replicates that draw whole clusters anew. One with a single kind has no area and is drawn again.
+/// Areas of replicates in which whole clusters are redrawn. A draw with only one kind has no area and is repeated.
 std::vector<double> areas_by_cluster(const std::vector<std::vector<Forecast>>& clusters,
                                      const BootstrapSettings& settings) {
   Random random(settings.seed);
@@ -90,7 +90,7 @@ std::vector<double> areas_by_cluster(const std::vector<std::vector<Forecast>>& c
   return areas;
 }
 
-/// How many times the variance of a share is what it would be were its forecasts independent; at least 1.
+/// Variance of a share, divided by the variance that it would have for independent forecasts; at least 1.
 double design_effect(const std::vector<std::vector<Forecast>>& clusters, double share, double count) {
   if (clusters.size() < 2 || share == 0.0 || share == 1.0) return 1.0;
   double squares = 0.0;
@@ -103,7 +103,7 @@ double design_effect(const std::vector<std::vector<Forecast>>& clusters, double 
   return std::max(1.0, squares * number / (number - 1.0) / (count * share * (1.0 - share)));
 }
 
-/// @param count  of forecasts; of as many as they are worth where they are in clusters.
+/// Wilson's 95 % interval of a share. @param count  number of forecasts; for clusters, divided by the design effect
 Interval wilson_interval(double share, double count) {
   const double z2 = kNormal95 * kNormal95;
   const double middle = (share + z2 / (2.0 * count)) / (1.0 + z2 / count);
@@ -140,7 +140,7 @@ RocCurve roc_curve(std::span<const Forecast> forecasts, const BootstrapSettings&
   } else {
     Random random(settings.seed);
     for (int i = 0; i < settings.replicates; ++i) {
-      const std::vector<double> first = drawn_anew(happened, random);  // in this order on every compiler
+      const std::vector<double> first = drawn_anew(happened, random);  // fixes the order of the draws
       areas.push_back(area_of(first, drawn_anew(did_not, random)));
     }
   }

@@ -17,8 +17,8 @@ constexpr std::size_t kMostFactors = 16;
 
 }  // namespace
 
-// Words of an odd number of bits: the product of two of them is one of an even number, so that no pair is confused with
-// a factor.
+// Each factor has a word with an odd number of bits set. The product of two words has an even number, so no interaction
+// of a pair is aliased with a factor.
 FractionalFactorial::FractionalFactorial(std::size_t factors) {
   INCISE_REQUIRE(factors >= 1 && factors <= kMostFactors,
                  fmt::format("expected 1 to {} factors, found {}", kMostFactors, factors));

@@ -79,7 +79,7 @@ double inverse_log(double h) {
   return (h > 0.0 ? 1.0 : -1.0) / std::log10(std::abs(h));
 }
 
-/// Whether an invariant is so close to 0, as symmetry makes it, that noise decides about its logarithm or sign.
+/// Whether an invariant is so close to 0, as it is for symmetric shapes, that noise determines its logarithm or sign.
 bool has_noise(const std::array<double, 7>& hu) {
   constexpr double kOfItsSize = 0.1;
   for (const std::size_t i : {1U, 2U, 3U}) {
@@ -106,7 +106,7 @@ FilledMoments filled_moments(const Contour& contour, const Vec3& approach) {
   }
   if (signed_area_mm2(contour, approach) < 0.0) polygon = {polygon.rbegin(), polygon.rend()};
 
-  // First about a corner, then about the centroid found there: central moments without cancellation.
+  // First about a corner, then about the centroid found in this way: central moments without cancellation.
   const Moments rough = moments_of(polygon, polygon[0]);
   INCISE_REQUIRE(rough[0][0] > 0.0, "the contour fills no area in the picture");
   const Vec2 centroid = polygon[0] + Vec2(rough[1][0], rough[0][1]) / rough[0][0];

@@ -55,7 +55,7 @@ class Grid {
   bool is_inside(const Node& node) { return value(node) < 0.0; }  // false for NaN: no value counts as outside
   bool is_center_inside(const Cell& cell) { return field_(center(cell)) < 0.0; }
 
-  /// The zero between two nodes; nullopt if the function has no value on the way to it.
+  /// The zero between two nodes; nullopt if the search meets a place without a value.
   std::optional<Vec2> zero_between(const Node& inside, const Node& outside) {
     if (std::isnan(value(outside))) return std::nullopt;
     const Vec2 start = position(inside);
@@ -64,7 +64,7 @@ class Grid {
     if (f_out == 0.0) return start + way;
     int last_side = 0;
     for (int n = 0; n < kMostTrials && (out - in) * step_ > kZeroMm; ++n) {
-      // False position, halving the value at an end that stays (Illinois); bisection now and then bounds the count.
+      // False position, halving the value at an end that stays (Illinois); every fourth trial bisects.
       const double share = n % 4 == 3 ? 0.5 : f_in / (f_in - f_out);
       const double trial = in + share * (out - in);
       const double f = field_(start + trial * way);
@@ -83,7 +83,7 @@ class Grid {
     return start + out * way;
   }
 
-  /// Through which edge the border leaves a cell that it entered through edge `entry`, keeping the inside on its left.
+  /// The edge through which the border leaves a cell that it entered through `entry`, with the inside on its left.
   int exit_edge(const Cell& cell, int entry) {
     const auto leaves = [&](int k) { return !is_inside(cell.corner(k)) && is_inside(cell.corner(k + 1)); };
     const int right = (entry + 1) % 4;
@@ -94,7 +94,7 @@ class Grid {
     for (const int k : {right, (entry + 2) % 4, left}) {
       if (leaves(k)) return k;
     }
-    return entry;  // cannot be: a border that enters a cell leaves it
+    return entry;  // not reached: a border that enters a cell leaves it
   }
 
  private:
@@ -114,7 +114,7 @@ LevelLoop trace_level_loop(const std::function<double(const Vec2&)>& field, cons
   Grid grid(field, inside, step_mm);
   INCISE_REQUIRE(grid.is_inside({0, 0}), "the function is not negative at the point that is said to lie inside");
 
-  // From far outside inwards along +x, so that the first border met is the outermost one.
+  // Search from the end of the reach inwards, along -x: the first border found is the outermost one.
   int column = static_cast<int>(std::ceil(reach_mm / step_mm)) + 1;
   INCISE_REQUIRE(!grid.is_inside({column, 0}), "the function is still negative at the end of the reach");
   while (!grid.is_inside({column - 1, 0})) --column;
@@ -157,7 +157,7 @@ Contour outer_offset(const Contour& contour, double distance_mm, const Vec3& app
   }
   const auto rightmost = std::max_element(flat.points.begin(), flat.points.end(),
                                           [](const Vec3& a, const Vec3& b) { return a.x() < b.x(); });
-  // Deep inside the contour this is positive again; the outer border never gets there.
+  // Deep inside the contour the field is positive again, but the outer border never leads there.
   const auto field = [&](const Vec2& p) { return nearest_on(flat, Vec3(p.x(), p.y(), 0.0)).distance_mm - distance_mm; };
   const double step = std::min(kOffsetStepMm, distance_mm / 4.0);
   const LevelLoop loop = trace_level_loop(field, rightmost->head<2>(), distance_mm, step);

@@ -19,7 +19,7 @@ struct Range {
 Range mean_of(const PrintedGroup& group) {
   return {low(group.mean), high(group.mean)};
 }
-/// Of the sd squared. Where no sd is printed 0: exact for one value, the least for more. @see is_spread_known
+/// Range of sd²; 0 if no sd is printed, which is exact for one value and the least for more. @see is_spread_known
 Range variance_of(const PrintedGroup& group) {
   if (!group.sd) return {0.0, 0.0};
   const double least = std::max(0.0, low(*group.sd));
@@ -27,14 +27,14 @@ Range variance_of(const PrintedGroup& group) {
   return {least * least, most * most};
 }
 
-/// How many values each part has, as far as the table tells.
+/// Number of values of each part, as far as the table determines it.
 struct Counts {
-  std::vector<std::size_t> parts;  ///< empty: not known
+  std::vector<std::size_t> parts;  ///< empty if not known
   std::optional<std::size_t> total;
   bool is_contradiction = false;
 };
 
-/// One count that is not printed follows from the others.
+/// Reads the counts; a single missing count follows from the others.
 Counts counts_of(const PrintedGroup& total, const std::vector<PrintedGroup>& parts, std::vector<Finding>& findings) {
   Counts counts{.parts = {}, .total = total.n};
   std::size_t sum = 0, missing = 0;
@@ -43,7 +43,7 @@ Counts counts_of(const PrintedGroup& total, const std::vector<PrintedGroup>& par
     missing += part.n ? 0 : 1;
     counts.parts.push_back(part.n.value_or(0));
   }
-  // A part that is not counted has one value at least.
+  // A part without a printed count has at least one value.
   const bool is_short = total.n && *total.n < sum + missing;
   if (is_short || (total.n && missing == 0 && *total.n != sum)) {
     findings.push_back(
@@ -60,7 +60,7 @@ Counts counts_of(const PrintedGroup& total, const std::vector<PrintedGroup>& par
   return counts;
 }
 
-/// Whether the spread within every part is: its sd is printed, or it is of one value, which does not stray from itself.
+/// Whether the spread within every part is known: its sd is printed, or it has a single value, without spread.
 bool is_spread_known(const std::vector<PrintedGroup>& parts, const Counts& counts) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const bool is_one = parts[i].n == 1U || (!counts.parts.empty() && counts.parts[i] == 1);
@@ -69,13 +69,13 @@ bool is_spread_known(const std::vector<PrintedGroup>& parts, const Counts& count
   return true;
 }
 
-/// The fewest values that a part may have. One without an sd may be a single one.
+/// The fewest values that a part may have; 1 for a part without n and sd.
 std::size_t fewest_of(const PrintedGroup& part, const AuditSettings& settings) {
   if (part.n) return *part.n;
   return part.sd ? count_of(part, settings) : 1;
 }
 
-/// Mean of the pooled values. @pre counts of all parts
+/// Range of the mean of the pooled values. @pre counts of all parts
 Range pooled_mean(const std::vector<PrintedGroup>& parts, const Counts& counts) {
   Range sum;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -87,7 +87,7 @@ Range pooled_mean(const std::vector<PrintedGroup>& parts, const Counts& counts) 
   return {sum.low / n, sum.high / n};
 }
 
-/// Least of Σ n_i (m_i − c)² over all c and all means within their rounding: convex in c.
+/// Least value of Σ n_i (m_i − c)² over c in `centers` and all means within their rounding. The sum is convex in c.
 double least_between(const std::vector<PrintedGroup>& parts, const Counts& counts, Range centers) {
   const auto pull = [&](double c) {  // half the derivative
     double sum = 0.0;
@@ -108,7 +108,7 @@ double least_between(const std::vector<PrintedGroup>& parts, const Counts& count
   return sum;
 }
 
-/// (N − 1) sd² = Σ (n_i − 1) sd_i² + Σ n_i (m_i − mean)². @pre counts of all parts, two values
+/// Range of sd² in (N − 1) sd² = Σ (n_i − 1) sd_i² + Σ n_i (m_i − mean)². @pre counts of all parts, two values
 Range pooled_variance(const std::vector<PrintedGroup>& parts, const Counts& counts) {
   const auto count = static_cast<double>(*counts.total);
   const Range mean = pooled_mean(parts, counts);
@@ -117,7 +117,7 @@ Range pooled_variance(const std::vector<PrintedGroup>& parts, const Counts& coun
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto n = static_cast<double>(counts.parts[i]);
     const Range variance = variance_of(parts[i]);
-    // About any other point the sum is greater than about the mean: no mean within its rounding gives more than this.
+    // The sum about the mean is less than about any other point, so no mean within its rounding gives more than this.
     const double off = std::abs(parts[i].mean.value - center) + parts[i].mean.half_unit;
     sum.low += (n - 1.0) * variance.low;
     sum.high += (n - 1.0) * variance.high + n * off * off;
@@ -125,7 +125,7 @@ Range pooled_variance(const std::vector<PrintedGroup>& parts, const Counts& coun
   return {sum.low / (count - 1.0), sum.high / (count - 1.0)};
 }
 
-/// Values of two parts, in shares that give the pooled mean: their mean square about it. Absent: no shares do.
+/// Mean square about the pooled mean of values from two parts, in shares that give this mean. Absent if no shares do.
 std::optional<Range> spread_of_pair(const PrintedGroup& lower, const PrintedGroup& upper, const Range& total) {
   const Range a = mean_of(lower), b = mean_of(upper);
   const Range m{std::max(total.low, a.low), std::min(total.high, b.high)};
@@ -145,8 +145,8 @@ std::optional<Range> spread_of_pair(const PrintedGroup& lower, const PrintedGrou
           greatest_product(a.low, b.high, m.low, m.high)};
 }
 
-/// Without counts: the mean square about the pooled mean is linear in the parts' shares, which give that mean and add
-/// up to 1, so that it is least and greatest where no more than two parts have any.
+/// Range of the pooled sd² without counts. The mean square about the pooled mean is linear in the parts' shares, which
+/// give that mean and add up to 1. So it is least and greatest where at most two parts have a share.
 Range variance_for_any_shares(const PrintedGroup& total, const std::vector<PrintedGroup>& parts, const Counts& counts,
                               const AuditSettings& settings) {
   const Range mean = mean_of(total);
@@ -164,7 +164,7 @@ Range variance_for_any_shares(const PrintedGroup& total, const std::vector<Print
       if (const auto pair = spread_of_pair(parts[i], parts[j], mean)) spread.include(*pair);
     }
   }
-  // (N − 1) sd² = N · spread − Σ sd_i²: monotonous in N, so that the fewest values and very many enclose it.
+  // (N − 1) sd² = N · spread − Σ sd_i²: monotonic in N, so the fewest and very many values bound it.
   const auto n = static_cast<double>(counts.total.value_or(fewest));
   Range result{(n * spread.low - parts_sum.high) / (n - 1.0), (n * spread.high - parts_sum.low) / (n - 1.0)};
   if (!counts.total) result.include(spread);
@@ -208,7 +208,7 @@ void check_pooling(const PrintedGroup& total, const std::vector<PrintedGroup>& p
       is_counted ? pooled_variance(parts, counts) : variance_for_any_shares(total, parts, counts, settings);
   const double most = std::sqrt(std::max(0.0, variance.high));
   const double fewest = std::sqrt(std::max(0.0, variance.low));
-  // The sum grows with the sd of each part: without one it still has its least, but no greatest.
+  // The sum grows with the sd of each part. If an sd is missing, the sum has a lower bound, but no upper one.
   if (!is_spread_known(parts, counts)) {
     row.not_checkable.push_back({AuditRule::PooledSdTooLarge, total.name, "sd of every part"});
   } else if (low(*total.sd) > most + kSlack) {

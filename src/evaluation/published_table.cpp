@@ -13,7 +13,7 @@
 namespace incise {
 namespace {
 
-/// The baseline that most rows agree on: one of their lower ends lies in it.
+/// Finds the baseline that most rows agree on. The candidates are the lower ends of the rows' ranges.
 void find_baseline(const std::vector<PrintedRow>& rows, Audit& audit) {
   std::vector<BaselineRange> ranges;
   for (const PrintedRow& row : rows) {
@@ -33,7 +33,7 @@ void find_baseline(const std::vector<PrintedRow>& rows, Audit& audit) {
     audit.baseline_mm = common;
   }
   if (audit.scored_rows > 1 &&
-      2 * audit.rows_on_baseline <= audit.scored_rows) {  // which of them is wrong is not known
+      2 * audit.rows_on_baseline <= audit.scored_rows) {  // unknown which rows are wrong
     audit.baseline_mm.reset();
     audit.rows_on_baseline = 0;
   }
@@ -42,7 +42,7 @@ void find_baseline(const std::vector<PrintedRow>& rows, Audit& audit) {
 }  // namespace
 
 std::optional<PrintedNumber> printed_number(std::string_view text) {
-  // A sign and digits with at most one point: "1e3" or "inf" are not how a table prints a length.
+  // A sign and digits with at most one point: tables do not print a length as "1e3" or "inf".
   const bool is_plain = !text.empty() && text.find_first_not_of("+-.0123456789") == std::string_view::npos;
   if (!is_plain) return std::nullopt;
   std::string_view digits = text;

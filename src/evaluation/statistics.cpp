@@ -21,7 +21,7 @@ Summary summarize(std::span<const double> values) {
   }
   const auto count = static_cast<double>(values.size());
   summary.mean = sum / count;
-  // In two passes, so that a small spread about a large mean keeps its digits.
+  // Two passes keep the digits of a small spread about a large mean.
   double squares = 0.0;
   for (const double value : values) squares += (value - summary.mean) * (value - summary.mean);
   if (values.size() > 1) summary.sd = std::sqrt(squares / (count - 1.0));

@@ -43,7 +43,7 @@ TTest tested(double difference, double standard_error, double df, double level) 
 
 SampleMoments moments_of(std::span<const double> values) {
   const Summary summary = summarize(values);
-  // Values that are all the same may leave rounding in their mean, which is no spread.
+  // Equal values may differ from their mean by rounding, which is no spread.
   const double sd = summary.min == summary.max ? 0.0 : summary.sd;
   return {.n = values.size(), .mean = summary.min == summary.max ? summary.min : summary.mean, .sd = sd};
 }
@@ -103,7 +103,7 @@ std::optional<std::size_t> fewest_for_significance(const SampleMoments& before, 
     return student_t_test({n, before.mean, before.sd}, {n, after.mean, after.sd}).p.value_or(1.0);
   };
   constexpr std::size_t kMost = 10'000'000;
-  std::size_t low = 1;  // known to be too few, unless there is no spread at all
+  std::size_t low = 1;  // too few, unless there is no spread at all
   std::size_t high = 2;
   while (high < kMost && p_for(high) >= alpha) {
     low = high;

@@ -9,7 +9,7 @@
 namespace incise {
 
 /// Bounding volume hierarchy over boxes: median split along the longest side, nodes in one flat array, left child next
-/// to its parent. Always the same tree for the same boxes.
+/// to its parent. The same boxes always give the same tree.
 class BoxTree {
  public:
   BoxTree() = default;
@@ -17,8 +17,8 @@ class BoxTree {
 
   [[nodiscard]] const Box3& box() const { return nodes_[0].box; }
 
-  /// Calls visit(item) for every item whose leaf's box passes `accepts(box)`. `accepts` is asked before each descent,
-  /// so it may grow stricter as visit finds something; the child with the lower `rank(box)` is descended first.
+  /// Calls visit(item) for every item whose leaf and its ancestors pass `accepts(box)`. `accepts` is called before each
+  /// descent, so it may become stricter when `visit` finds something. The child with the lower `rank(box)` comes first.
   template <class Accepts, class Rank, class Visit>
   void traverse(const Accepts& accepts, const Rank& rank, const Visit& visit) const {
     std::array<std::uint32_t, kMaxDepth> stack{};

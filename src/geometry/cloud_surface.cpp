@@ -22,7 +22,7 @@ Vec6 basis_of(const Vec2& d) {
   return b;
 }
 
-/// Height as a quadratic about a place.
+/// Fits the height as a quadratic about a place; nullopt if that fails.
 std::optional<Vec6> quadratic(const std::vector<Vec3>& near, const std::vector<double>& weights) {
   Mat6 normal = Mat6::Zero();
   Vec6 right = Vec6::Zero();
@@ -31,7 +31,7 @@ std::optional<Vec6> quadratic(const std::vector<Vec3>& near, const std::vector<d
     normal += weights[i] * b * b.transpose();
     right += weights[i] * near[i].z() * b;
   }
-  // Points on a line or two leave the curvature open: a hint of flatness settles it.
+  // Points on one or two lines do not determine the curvature: a weak pull to flatness does.
   normal.diagonal().tail<3>().array() += 1e-6 * normal(0, 0);
   const Eigen::LDLT<Mat6> solver(normal);
   const Vec6 result = solver.solve(right);
@@ -39,7 +39,7 @@ std::optional<Vec6> quadratic(const std::vector<Vec3>& near, const std::vector<d
   return result;
 }
 
-/// Widest angle about the place in which no point lies.
+/// Returns the widest angle about the place, rad, in which no point lies.
 double widest_empty_angle(const std::vector<Vec3>& near) {
   std::vector<double> angles;
   for (const Vec3& p : near) {
@@ -126,7 +126,7 @@ std::optional<CloudPlace> CloudSurface::at(const Vec2& place) const {
   result.position_mm = frame_.from_view(Vec3(place.x(), place.y(), (*height)(0) + in_view_[found.front()].z()));
   result.normal = frame_.from_view(Vec3(-(*height)(1), -(*height)(2), 1.0).normalized());
   constexpr double kEmptySide = 0.9 * std::numbers::pi;
-  // At the border of a hole one side is empty near by, but not farther off: that is a gap, not the rim.
+  // At the border of a hole, one side is empty nearby but not farther away: a gap, not the rim.
   if (widest_empty_angle(near) > kEmptySide) {
     near.clear();
     for (const std::size_t i : within(place, settings_.max_reach_mm))
@@ -157,7 +157,7 @@ TriMesh CloudSurface::body(const Vec2& low, const Vec2& high, double step_mm, do
       if (!place || place->gap_mm > max_gap_mm || place->is_extrapolated) continue;
       corner(i, j) = static_cast<int>(mesh.vertices.size());
       mesh.vertices.push_back(place->position_mm);
-      mesh.vertices.push_back(place->position_mm + depth_mm * approach());  // the floor's corner follows its top
+      mesh.vertices.push_back(place->position_mm + depth_mm * approach());  // each bottom corner follows its top corner
     }
   }
   const auto has_cell = [&](int i, int j) {
@@ -168,7 +168,7 @@ TriMesh CloudSurface::body(const Vec2& low, const Vec2& high, double step_mm, do
     mesh.triangles.push_back({VertexId(static_cast<std::size_t>(a)), VertexId(static_cast<std::size_t>(b)),
                               VertexId(static_cast<std::size_t>(c))});
   };
-  // A wall under the edge from a to b, which has the body on its left: tops a, b; floors a + 1, b + 1.
+  // A wall under the edge from a to b, with the body on its left: top corners a, b; bottom corners a + 1, b + 1.
   const auto add_wall = [&](int a, int b) {
     add(a, a + 1, b);
     add(b, a + 1, b + 1);

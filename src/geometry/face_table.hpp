@@ -11,7 +11,7 @@
 
 namespace incise {
 
-/// One face of one tet in the table of faces: its corners in ascending order without the lowest, which names the row.
+/// One face of one tet in the table of faces: its two higher corners, ascending; the lowest corner is the row.
 struct FaceEntry {
   std::uint32_t middle = 0;
   std::uint32_t highest = 0;

@@ -55,7 +55,7 @@ ScalarRaster blurred(const Raster& raster, double sigma_mm) {
   if (sigma_mm == 0.0) return result;
   std::vector<double> kernel = gaussian_weights(sigma_mm / raster.pixel_mm);
   double sum = 0.0;
-  for (std::size_t k = kernel.size() - 1; k > 0; --k) sum += kernel[k];  // the two sides from end to end
+  for (std::size_t k = kernel.size() - 1; k > 0; --k) sum += kernel[k];  // the two halves, added from end to end
   for (const double weight : kernel) sum += weight;
   for (double& weight : kernel) weight /= sum;
   const auto width = static_cast<std::size_t>(raster.width);

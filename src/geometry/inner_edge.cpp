@@ -17,10 +17,10 @@
 namespace incise {
 namespace {
 
-/// Skin that is pictured around the kerf, so that the plug and the skin outside are separate.
+/// Width of the strip of skin in the picture around the kerf, mm: shows the plug and the skin outside apart.
 constexpr double kSkinBorderMm = 2.0;
 
-/// Reach of the plane that is fitted to the plug's skin where a height is read, mm.
+/// Radius within which a plane is fitted to the plug's skin to read its height, mm.
 constexpr double kHeightReachMm = 0.6;
 
 void require_valid(const Vec3& inside_mm, const InnerEdgeSettings& settings) {
@@ -46,7 +46,7 @@ void require_valid(const CutSurface& surface, const InnerEdgeSettings& settings)
   }
 }
 
-/// The picture of the kerf and a strip of skin around it; nullopt without a kerf.
+/// Returns the picture of the kerf and a strip of skin around it; nullopt without a kerf.
 std::optional<DepthBuffer> picture_of(const CutSurface& surface, const Points& in_view, double pixel_mm) {
   Box3 walls;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -67,7 +67,7 @@ Raster visible_skin(const DepthBuffer& picture, const CutSurface& surface) {
   return skin;
 }
 
-/// Whether the plug reaches past the body: borders on emptiness that goes on to the picture's border.
+/// Whether the plug extends to the body's silhouette: it borders on empty pixels that continue to the picture's border.
 bool borders_on_outside(const Raster& plug, const DepthBuffer& picture, double reach_mm) {
   Raster empty(picture, 0);
   for (std::size_t p = 0; p < empty.pixels.size(); ++p) empty.pixels[p] = picture.triangles[p] < 0 ? 1 : 0;
@@ -80,11 +80,11 @@ bool borders_on_outside(const Raster& plug, const DepthBuffer& picture, double r
   return false;
 }
 
-/// The connected skin around the point inside, without holes; nullopt if it hangs together with the skin outside.
+/// Returns the connected skin around the point inside, without holes; nullopt if it is connected to the skin outside.
 std::optional<Raster> plug_of(const DepthBuffer& picture, const CutSurface& surface, const Vec2& inside,
                               const InnerEdgeSettings& settings) {
   const Raster skin = visible_skin(picture, surface);
-  // Closing first mends slits in the skin, opening then cuts strips that would hold the plug to the outside.
+  // Closing first mends slits in the skin; opening then cuts strips that would join the plug to the outside.
   const Raster mended = opened(closed(skin, settings.closing_mm), settings.opening_mm);
   const Vec2 at = picture.index_of(inside);
   if (!(at.x() > -0.5 && at.y() > -0.5 && at.x() < picture.width - 0.5 && at.y() < picture.height - 0.5))
@@ -99,8 +99,8 @@ std::optional<Raster> plug_of(const DepthBuffer& picture, const CutSurface& surf
   return plug;
 }
 
-/// Height of the plug's skin at a point of its edge: of a plane through the pixels around it, since they all lie on one
-/// side.
+/// Returns the height of the plug's skin at a point of its edge, mm: on a plane fitted to the pixels around it, because
+/// they all lie on one side.
 std::optional<double> skin_height(const Raster& plug, const DepthBuffer& picture, const CutSurface& surface,
                                   const Vec2& p) {
   const Vec2 at = plug.index_of(p);
@@ -124,13 +124,13 @@ std::optional<double> skin_height(const Raster& plug, const DepthBuffer& picture
     }
   }
   if (count == 0) return std::nullopt;
-  // With few pixels the slope is unknown: a weak pull to zero slope then leaves their mean.
+  // Few pixels do not determine the slope: with a weak pull to zero slope, the result is their mean.
   normal_matrix(0, 0) += 1e-3;
   normal_matrix(1, 1) += 1e-3;
   return normal_matrix.ldlt().solve(right_side).z();
 }
 
-/// The outline of the plug, at the height that its skin has there.
+/// Returns the outline of the plug, at the height of its skin.
 std::optional<Contour> edge_of(const Raster& plug, const ViewFrame& view, const InnerEdgeSettings& settings,
                                const std::function<std::optional<double>(const Vec2&)>& height_at) {
   std::optional<Contour> outline;

@@ -29,13 +29,13 @@ class SurfaceNets {
   [[nodiscard]] std::size_t layer_size() const {
     return static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]);
   }
-  /// Only two layers of cells are kept: quadrilaterals join a layer to itself and to the one before.
+  /// Only two layers of cells are kept: quadrilaterals join cells of one layer, or of it and the layer before.
   [[nodiscard]] VertexId& vertex_of(const Cell& c) {
     const auto layer = static_cast<std::size_t>(c[2] % 2);
     return vertex_of_[layer * layer_size() + static_cast<std::size_t>(c[1]) * static_cast<std::size_t>(cells_[0]) +
                       static_cast<std::size_t>(c[0])];
   }
-  /// Above the level at a voxel's centre; beyond the volume 1 below it.
+  /// Returns the value minus the level at a voxel's centre; -1 beyond the volume.
   [[nodiscard]] double height(const Cell& voxel) const {
     if (!volume_.grid.contains(voxel[0], voxel[1], voxel[2])) return -1.0;
     return static_cast<double>(volume_.at(voxel[0], voxel[1], voxel[2])) - level_;
@@ -72,7 +72,8 @@ class SurfaceNets {
     return volume_.grid.world_from_index(index);
   }
 
-  /// The edge from the cell's first corner along an axis, and the four cells around it: all were visited.
+  /// Adds the quadrilateral across the edge from the cell's first corner along an axis, if the surface crosses it. The
+  /// four cells around the edge have all been visited.
   void join_around(const Cell& cell, std::size_t axis, const std::array<double, 8>& heights) {
     const bool is_inside = heights[0] >= 0.0;
     if (is_inside == (heights[std::size_t{1} << axis] >= 0.0)) return;

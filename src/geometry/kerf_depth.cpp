@@ -30,7 +30,7 @@ void require_valid(const KerfDepthSettings& s, const Contour& course) {
   INCISE_REQUIRE(length_mm(course) > 0.0, "expected a course with a length");
 }
 
-/// Depth of the lowest removed point below the skin in each line of sight, mm; 0 where nothing is gone.
+/// Returns the depth of the lowest removed point below the skin in each line of sight, mm; 0 where nothing is removed.
 ScalarRaster depth_picture(const KerfInput& kerf, const ViewTets& tets, const ViewFrame& view, const RasterGrid& grid) {
   Points in_view;
   in_view.reserve(kerf.surface.vertices.size());
@@ -58,7 +58,7 @@ ScalarRaster depth_picture(const KerfInput& kerf, const ViewTets& tets, const Vi
   return depth;
 }
 
-/// The greatest mean depth over one needle diameter on the line across the course.
+/// Returns the greatest mean depth, mm, over one needle diameter on the line across the course.
 double deepest_across(const ScalarRaster& depth, const Vec2& p, const Vec2& across, const KerfDepthSettings& settings) {
   const double step = 0.5 * depth.pixel_mm;
   const auto half = static_cast<int>(std::floor(settings.reach_mm / step));

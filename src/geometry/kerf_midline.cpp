@@ -20,10 +20,10 @@ const Vec3 kAgainstPlane = -Vec3::UnitZ();  // approach for curves in view coord
 /// Passes of re-centring and smoothing; the second already moves the line by less than 0.01 mm.
 constexpr int kCentringPasses = 3;
 
-/// Length of the piece that gives an open cut's direction at its ends: long enough to be free of the mesh's grain.
+/// Length of the piece that gives an open cut's direction at its ends, mm: long enough to average out the mesh's grain.
 constexpr double kDirectionMm = 2.0;
 
-/// Spacing of the mid-line while it is worked on, in pixels.
+/// Spacing of the mid-line during the computation, in pixels.
 constexpr double kWorkingSpacing = 1.0;
 
 Contour evenly_spaced(const Contour& curve, double spacing_mm) {
@@ -31,10 +31,10 @@ Contour evenly_spaced(const Contour& curve, double spacing_mm) {
   return resample(curve, count);
 }
 
-/// Where across the kerf the removed tissue has its middle, and how wide it is.
+/// Middle and width of the removed tissue across the kerf.
 struct CrossSection {
   double middle_mm = 0.0;  // from the given point, along the normal
-  double width_mm = 0.0;   // of a kerf cut through the whole layer that holds as much
+  double width_mm = 0.0;   // of a kerf through the whole layer with as much removed tissue
 };
 
 CrossSection section_across(const KerfPicture& picture, const Vec2& p, const Vec2& normal) {
@@ -80,8 +80,8 @@ double mean_width(const KerfPicture& picture, const Contour& curve) {
   return sum / static_cast<double>(curve.points.size());
 }
 
-/// The line as far from the tissue inside the ring as from all other tissue: the zero level of a difference of
-/// distances. It parts the one from the other, so it is closed whatever the shape of the kerf.
+/// Returns the line equally far from the tissue inside the ring and from all other tissue: the zero level of a
+/// difference of distances. It separates the two, so it is closed whatever the shape of the kerf.
 std::optional<Contour> equidistant_loop(const KerfPicture& picture, const Raster& inside, const Vec3& enclosed) {
   Raster outside(picture.mask, 0);
   for (std::size_t p = 0; p < outside.pixels.size(); ++p) {
@@ -101,7 +101,7 @@ std::optional<Contour> equidistant_loop(const KerfPicture& picture, const Raster
   return loop;
 }
 
-/// Carries both ends of an open curve on, straight, until they leave the kerf.
+/// Extends both ends of an open curve straight to the border of the kerf, by less than kMaxHalfWidthMm.
 Contour extended_to_ends(const KerfPicture& picture, Contour curve, const KerfMidlineSettings& settings) {
   const double step = 0.25 * settings.pixel_mm;
   const auto back =
@@ -133,7 +133,7 @@ Contour trimmed(const KerfPicture& picture, const Contour& path) {
   for (const Vec3& p : path.points)
     half_width += sample(to_tissue, p.head<2>()) / static_cast<double>(path.points.size());
   const auto cut = static_cast<std::size_t>(std::ceil(half_width / picture.mask.pixel_mm));
-  if (path.points.size() < 3 * cut) return path;  // hardly longer than wide: a hole rather than a cut
+  if (path.points.size() < 3 * cut) return path;  // hardly longer than wide: a hole, not a cut
   const auto begin = path.points.begin() + static_cast<std::ptrdiff_t>(cut);
   const auto end = path.points.end() - static_cast<std::ptrdiff_t>(cut);
   return {.points = Points(begin, end), .is_closed = false};
@@ -148,14 +148,14 @@ std::optional<Contour> open_midline(const KerfPicture& picture, const KerfMidlin
   return extended_to_ends(picture, centred(picture, trimmed(picture, *path), settings), settings);
 }
 
-/// From the picture plane onto the surface.
+/// Projects a curve from the picture plane onto the surface.
 Contour on_surface(const Contour& curve, const KerfInput& input, const ViewFrame& view) {
   const SurfaceQuery surface(input.surface);
   Contour result{.points = {}, .is_closed = curve.is_closed};
   double height = 0.0;
   for (const Vec3& p : curve.points) {
     const std::optional<SurfacePoint> seen = surface.seen_at(view.from_view({p.x(), p.y(), height}), input.approach);
-    // Past the silhouette, where a closed gap may lead, the nearest point of the surface stands in.
+    // Beyond the silhouette, where closing a gap may lead the curve, the nearest point of the surface is used.
     const Vec3 position =
         seen ? seen->position_mm : surface.nearest(view.from_view({p.x(), p.y(), height})).position_mm;
     height = view.to_view(position).z();

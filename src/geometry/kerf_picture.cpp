@@ -18,10 +18,10 @@
 namespace incise {
 namespace {
 
-/// Free border around the kerf, so that the way out of an open ring is not narrowed by the picture's frame.
+/// Free border around the kerf, mm: the picture's frame must not narrow the way out of an open ring.
 constexpr double kKerfBorderMm = 3.0;
 
-/// Steps in which directions are sorted when a gap is looked for.
+/// Number of directions that the search for a gap distinguishes.
 constexpr int kDirections = 3600;
 
 }  // namespace
@@ -70,7 +70,7 @@ Raster mask_of(const ScalarRaster& coverage, const KerfMidlineSettings& settings
 
 std::array<int, 2> pixel_of(const RasterGrid& grid, const Vec2& p) {
   const Vec2 at = grid.index_of(p);
-  // Far off the picture is as good as just off it.
+  // A point far outside the picture counts as just outside it.
   const auto rounded = [](double x, int count) {
     return static_cast<int>(std::lround(std::clamp(x, -1.0, static_cast<double>(count))));
   };
@@ -134,7 +134,7 @@ double widest_gap_deg(const Raster& mask, const Vec2& inside) {
     for (int i = 0; i < mask.width; ++i) {
       if (mask.at(i, j) == 0) continue;
       const Vec2 offset = mask.centre(i, j) - inside;
-      if (offset.norm() <= mask.pixel_mm) return 0.0;  // the kerf runs over the point: it is seen in every direction
+      if (offset.norm() <= mask.pixel_mm) return 0.0;  // the kerf covers the point, so it lies in every direction
       const double half = std::asin(0.5 * mask.pixel_mm / offset.norm());
       const double angle = std::atan2(offset.y(), offset.x()) + 2.0 * units::kPi;
       const double per_radian = kDirections / (2.0 * units::kPi);
@@ -146,7 +146,7 @@ double widest_gap_deg(const Raster& mask, const Vec2& inside) {
   }
   int longest = 0;
   int run = 0;
-  for (int k = 0; k < 2 * kDirections; ++k) {  // twice round, for a gap across the first direction
+  for (int k = 0; k < 2 * kDirections; ++k) {  // twice round: a gap may contain the first direction
     run = is_cut[static_cast<std::size_t>(k % kDirections)] != 0 ? 0 : run + 1;
     longest = std::max(longest, run);
   }
@@ -162,8 +162,8 @@ WidestGap widest_gap(const Raster& mask, const Vec2& inside) {
   std::vector<std::size_t> order(mask.pixels.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, std::greater(), [&](std::size_t p) { return distance.pixels[p]; });
-  // From the widest places on, until the way out opens: at its narrowest place.
-  DisjointSets sets(mask.pixels.size() + 1);  // the last stands for what lies beyond the picture
+  // Open the pixels from the widest places on, until there is a way out: it opens at its narrowest place.
+  DisjointSets sets(mask.pixels.size() + 1);  // the last one is the outside of the picture
   std::vector<std::uint8_t> is_open(mask.pixels.size(), 0);
   for (const std::size_t p : order) {
     if (distance.pixels[p] <= 0.0) break;
@@ -178,8 +178,8 @@ WidestGap widest_gap(const Raster& mask, const Vec2& inside) {
       }
     }
     if (is_open[start] == 0 || sets.root(start) != sets.root(beyond)) continue;
-    // Distances run to the centres of the kerf's outermost pixels. Where the start itself is the narrowest place, it
-    // lies beside the kerf, and the bridge is wider.
+    // Distances are measured to the centres of the kerf's outermost pixels. If the start itself is the narrowest place,
+    // it lies beside the kerf, and the bridge is wider.
     const double width = std::max(0.0, 2.0 * distance.pixels[p] - mask.pixel_mm);
     return {width, p == start ? std::nullopt : std::optional(mask.centre(i, j))};
   }

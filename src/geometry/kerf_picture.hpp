@@ -10,29 +10,32 @@
 
 namespace incise {
 
-/// No kerf is searched for its border farther than this from its middle.
+/// Greatest distance from the middle of a kerf at which its border is searched, mm.
 inline constexpr double kMaxHalfWidthMm = 4.0;
 
 /// A kerf seen along the approach.
 struct KerfPicture {
-  ScalarRaster coverage;  ///< share of the layer, [0, 1], that is gone at each pixel
-  Raster mask;            ///< where enough is gone, with narrow bridges and small islands taken in
+  ScalarRaster coverage;  ///< removed share of the layer, [0, 1], at each pixel
+  Raster mask;            ///< where enough is removed; includes narrow bridges and small islands
 };
 
 using ViewTets = std::vector<std::array<Vec3, 4>>;
 
-/// The removed tets in view coordinates. @throws InvalidArgument for a corner that is not finite.
+/// Returns the removed tets in view coordinates, mm. @throws InvalidArgument for a corner that is not finite.
 [[nodiscard]] ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view);
 
-/// Projects the removed tets, cut to the layer below the surface. nullopt if nothing of the layer is gone.
+/// Projects the removed tets, clipped to the layer below the surface. nullopt if nowhere enough of the layer is
+/// removed.
 /// @throws InvalidArgument for settings out of range.
 [[nodiscard]] std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
                                                       const KerfMidlineSettings& settings);
 
-/// Unit normal, in the picture plane, to the left of a curve at its point i. @pre neighbours of point i do not coincide in the picture.
+/// Unit normal, in the picture plane, to the left of a curve at its point i.
+/// @pre neighbours of point i do not coincide in the picture.
 [[nodiscard]] Vec2 normal_at(const Contour& curve, std::size_t i);
 
-/// The uncut tissue around point `inside` if the kerf parts it from the picture's border, else nullopt.
+/// Returns the uncut tissue around point `inside` if the kerf separates it from the picture's border, otherwise
+/// nullopt.
 [[nodiscard]] std::optional<Raster> enclosed_tissue(const Raster& mask, const Vec2& inside);
 
 /// Largest angle at `inside`, degrees, within which no pixel of the mask lies.
@@ -41,9 +44,10 @@ using ViewTets = std::vector<std::array<Vec3, 4>>;
 /// The way out of an open ring.
 struct WidestGap {
   double width_mm = 0.0;  ///< of the widest disc that can be rolled to the picture's border without touching the kerf
-  std::optional<Vec2> place;  ///< where it just fits; absent where that is no place between two parts of the kerf
+  std::optional<Vec2> place;  ///< where it just fits; absent if that is `inside` itself
 };
-/// The widest way from `inside` to the picture's border; of width 0 where there is none.
+/// Returns the widest way from `inside` to the picture's border: of width 0 if there is none or the kerf covers
+/// `inside`, of infinite width if `inside` is outside the picture.
 [[nodiscard]] WidestGap widest_gap(const Raster& mask, const Vec2& inside);
 
 }  // namespace incise

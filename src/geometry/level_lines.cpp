@@ -19,8 +19,8 @@ namespace {
 //   |       |
 //   0 --0-- 1
 //
-// A line enters the cell through a side where going round from corner k to k + 1 falls below the level and leaves
-// through one where it rises, so that higher values stay on its left.
+// A line enters the cell through a side on which the value falls below the level from corner k to k + 1, and leaves
+// through a side on which it rises above it, so higher values stay on its left.
 constexpr std::array<std::array<int, 2>, 4> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
 
 /// Follows the level through the grid of cells, which reaches one pixel beyond the picture if there is a value outside.
@@ -64,7 +64,7 @@ class Tracer {
     return starts;
   }
 
-  /// The line from an edge on, which is taken out of `next_`.
+  /// Returns the line that begins at an edge, and removes it from `next_`.
   [[nodiscard]] Contour follow(std::size_t first) {
     Contour line;
     std::size_t edge = first;
@@ -105,7 +105,8 @@ class Tracer {
       is_high[k] = corner >= level_;
       sum += corner;
     }
-    // In a saddle the middle decides which pair of corners is joined; without a value outside the high ones never are.
+    // In a saddle, the middle decides which pair of corners is joined; without a value outside, the high ones never
+    // are.
     const bool joins_high = outside_ && 0.25 * sum >= level_;
     for (std::size_t k = 0; k < 4; ++k) {
       if (!(is_high[k] && !is_high[(k + 1) % 4])) continue;

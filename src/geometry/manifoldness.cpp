@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-/// A side of a triangle, by where its two vertices stand in the list of all corners (3 · triangle + corner).
+/// A side of a triangle: its two vertices and their places in the list of all corners (3 · triangle + corner).
 struct Side {
   VertexId low, high;
   std::size_t low_corner, high_corner;
@@ -36,7 +36,7 @@ std::vector<Side> sides_of(std::span<const Triangle> triangles) {
 Manifoldness manifoldness_of(std::span<const Triangle> triangles) {
   Manifoldness found;
   found.triangles = triangles.size();
-  DisjointSets fans(3 * triangles.size());  // corners that hang together across edges of two triangles
+  DisjointSets fans(3 * triangles.size());  // corners that are connected across edges of two triangles
   std::vector<VertexId> on_bad_edge;
   const std::vector<Side> sides = sides_of(triangles);
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {

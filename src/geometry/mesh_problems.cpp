@@ -13,10 +13,10 @@ namespace {
 
 using Kind = MeshProblem::Kind;
 
-/// A tet is called flat when its volume is below this share of the cube of its longest edge: rounding could turn it.
+/// A tet is flat if its volume is at most this share of the cube of its longest edge: rounding could invert it.
 constexpr double kFlatRatio = 1e-12;
 
-/// Collects offenders of one kind and becomes an entry when there is one.
+/// Collects offenders of one kind; reports an entry if there are any.
 struct Finding {
   Kind kind;
   std::size_t first = 0;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Slack, in mm, that keeps pixels at exactly the radius on the same side whatever the rounding.
+/// Slack, mm: pixels at exactly the radius stay on the same side whatever the rounding.
 constexpr double kRadiusSlack = 1e-9;
 
 void require_radius(double radius_mm) {

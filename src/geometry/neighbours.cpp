@@ -16,7 +16,7 @@ bool comes_first(const Neighbour& a, const Neighbour& b) {
 }  // namespace
 
 struct NeighbourSearch::Tree {
-  /// What nanoflann asks of a set of points.
+  /// The interface that nanoflann requires of a set of points.
   struct PointSource {
     Points points;
     [[nodiscard]] std::size_t kdtree_get_point_count() const { return points.size(); }

@@ -16,10 +16,10 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kMostAsked = 2000;  // points that a median over the cloud is taken of
+constexpr std::size_t kMostAsked = 2000;  // a median over a larger cloud uses at least this many, fewer than twice
 constexpr std::size_t kChunk = 256;
 
-/// Mean and directions of a set of points, least spread first.
+/// Mean of a set of points, variances along its principal axes, and the axis of least variance.
 struct LocalPlane {
   Vec3 mean = Vec3::Zero();
   Vec3 variances = Vec3::Zero();  // ascending
@@ -42,7 +42,7 @@ LocalPlane plane_through(std::size_t count, const PointOf& point_of) {
   return plane;
 }
 
-/// Every so many points, so that about kMostAsked are asked.
+/// Returns the step between the points that a median over the cloud uses.
 std::size_t stride_of(std::size_t count) {
   return std::max<std::size_t>(1, count / kMostAsked);
 }
@@ -122,7 +122,7 @@ PointCloud downsample(const PointCloud& cloud, double voxel_mm) {
     }
     thinned.points.emplace_back(sum / static_cast<double>(end - begin));
     if (!cloud.normals.empty()) {
-      // Opposite sides of a thin sheet in one cube cancel: then the first point's normal stands for it.
+      // Opposite sides of a thin sheet in one cube cancel; then the first point's normal is used.
       const bool has_mean = normal.norm() > 1e-6;
       thinned.normals.emplace_back(has_mean ? Vec3(normal.normalized()) : cloud.normals[places[begin].second]);
     }
@@ -146,8 +146,8 @@ double sampled_area_mm2(std::span<const Vec3> points) {
   if (points.size() < kNeighbours + 2) return 0.0;
   const NeighbourSearch search(points);
   double area = 0.0;
-  // A disc between the eighth neighbour and the ninth: right to 6 % for points on a grid (1.05) and for points at
-  // random (0.94).
+  // A disc between the eighth and the ninth neighbour: accurate to 6 % for points on a grid (1.05) and random points
+  // (0.94).
   for (const Vec3& p : points) {
     const std::vector<Neighbour> near = search.nearest(p, kNeighbours + 2);
     area += 0.5 * units::kPi * (near[kNeighbours].squared_mm2 + near.back().squared_mm2) / (kNeighbours + 1.0);

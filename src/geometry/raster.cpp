@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kMaxPixels = 1e8;
 
-/// Slack, in pixels, by which a pixel's centre may lie off a triangle: neighbours then leave no pixel between them
-/// undrawn.
+/// Slack, in pixels, by which a pixel's centre may lie outside a triangle, so that no pixel between neighbouring
+/// triangles is left out.
 constexpr double kPixelSlack = 1e-9;
 
 struct PixelRange {
@@ -24,7 +24,7 @@ struct PixelRange {
   int last = -1;
 };
 
-/// The pixels along one axis whose centres lie in [low, high], cut to [0, count).
+/// Returns the pixels along one axis whose centres lie in [low, high], clipped to [0, count).
 PixelRange pixels_between(double low, double high, int count) {
   const double first = std::max(0.0, std::ceil(low - kPixelSlack));
   const double last = std::min(static_cast<double>(count - 1), std::floor(high + kPixelSlack));
@@ -79,7 +79,7 @@ double area_mm2(const Raster& raster) {
 
 double sample(const ScalarRaster& raster, const Vec2& p) {
   const Vec2 at = raster.index_of(p);
-  // Written so that a coordinate that is not a number also lies outside.
+  // In this form, a coordinate that is NaN also lies outside.
   if (!(at.x() > -1.0 && at.y() > -1.0 && at.x() < raster.width && at.y() < raster.height)) return 0.0;
   const int i = static_cast<int>(std::floor(at.x()));
   const int j = static_cast<int>(std::floor(at.y()));

@@ -15,7 +15,8 @@ constexpr double kFlat = 1e-12;
 
 double volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); }
 
-/// Whether the segment from p to q has its ends on both sides of the triangle's plane and passes through it, edges included.
+/// Whether the segment from p to q has its ends on both sides of the triangle's plane and passes through the triangle,
+/// edges included.
 bool pierces(const Vec3& p, const Vec3& q, const TriangleCorners& t, double flat) {
   const double below = volume(t[0], t[1], t[2], p);
   const double above = volume(t[0], t[1], t[2], q);
@@ -35,7 +36,7 @@ bool share_a_corner(const TriangleCorners& one, const TriangleCorners& other) {
                      [&](const Vec3& p) { return std::find(other.begin(), other.end(), p) != other.end(); });
 }
 
-/// Triangles that share no corner cross where an edge of one passes through the other.
+/// Whether two triangles that share no corner cross: an edge of one passes through the other.
 bool cross(const TriangleCorners& one, const TriangleCorners& other) {
   Box3 box;
   for (std::size_t i = 0; i < 3; ++i) box.extend(one[i]).extend(other[i]);

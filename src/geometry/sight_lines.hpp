@@ -15,14 +15,14 @@ class SightLines {
   explicit SightLines(const std::array<Vec3, 4>& corners) {
     Eigen::Matrix4d homogeneous;
     for (Eigen::Index c = 0; c < 4; ++c) homogeneous.col(c) << corners[static_cast<std::size_t>(c)], 1.0;
-    // The volume decides whether the inverse means anything; a flat tet hides nothing.
+    // The inverse has a meaning only if the tet has a volume; a flat tet has no extent along a line of sight.
     const double size = (homogeneous.topRows<3>().rightCols<3>().colwise() - homogeneous.col(0).head<3>()).norm();
     is_flat_ = std::abs(homogeneous.determinant()) <= 1e-12 * size * size * size;
     if (!is_flat_) barycentric_ = homogeneous.inverse();
   }
 
-  /// The part of the line of sight through (x, y) that lies within the tet and between two heights; empty (high < low)
-  /// if there is none.
+  /// The part of the line of sight through (x, y) that lies within the tet and between two heights, mm; empty (high <
+  /// low) if there is none.
   struct Span {
     double low = 0.0;
     double high = -1.0;
@@ -42,7 +42,7 @@ class SightLines {
     }
     return {low, high};
   }
-  /// Its length.
+  /// Length of that part, mm.
   [[nodiscard]] double length(const Vec2& p, double low, double high) const {
     const Span span = within(p, low, high);
     return std::max(0.0, span.high - span.low);

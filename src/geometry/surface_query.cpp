@@ -13,9 +13,9 @@
 namespace incise {
 namespace {
 
-/// Slack, as a share of a triangle's size, by which a ray may miss it: neighbours then leave no crack between them.
+/// Slack, as a share of a triangle's size, by which a ray may miss it, so that there is no crack between neighbours.
 constexpr double kRaySlack = 1e-9;
-/// Largest share of a triangle's sides that this slack may come to where the ray grazes the triangle.
+/// Upper limit of this slack, as a share of a triangle's sides, where the ray grazes the triangle.
 constexpr double kMaxBarycentricSlack = 1e-3;
 
 struct Ray {
@@ -23,7 +23,7 @@ struct Ray {
   Vec3 direction;
 };
 
-/// Where the ray enters the box grown by `slack`: a distance in [0, limit], or infinity if it passes by.
+/// Returns where the ray enters the box grown by `slack`: a distance in [0, limit], or infinity if it misses the box.
 double entry_distance(const Box3& box, const Ray& ray, double slack, double limit) {
   double near = 0.0;
   double far = limit;
@@ -63,7 +63,7 @@ std::optional<Hit> hit_triangle(const Ray& ray, const std::array<Vec3, 3>& corne
   // The slack is a length beside the triangle; seen at a grazing angle it covers more of the barycentric range.
   const double slack = std::min(kMaxBarycentricSlack, kRaySlack * size / std::abs(determinant));
   if (v < -slack || w < -slack || v + w > 1.0 + slack) return std::nullopt;
-  const Vec3 inside = Vec3(1.0 - v - w, v, w).cwiseMax(0.0);  // a hit within the slack is one of the edge
+  const Vec3 inside = Vec3(1.0 - v - w, v, w).cwiseMax(0.0);  // a hit within the slack counts as a hit on the edge
   return Hit{e2.dot(q) / determinant, inside / inside.sum()};
 }
 
@@ -72,7 +72,7 @@ std::optional<Hit> hit_triangle(const Ray& ray, const std::array<Vec3, 3>& corne
 struct SurfaceQuery::Tree {
   std::vector<std::array<Vec3, 3>> corners;
   BoxTree boxes;
-  double slack_mm = 0.0;  // by which boxes are grown when a ray meets them
+  double slack_mm = 0.0;  // by which boxes are grown for rays
 
   [[nodiscard]] SurfacePoint point(std::size_t triangle, const Vec3& barycentric, double distance) const {
     const auto& [a, b, c] = corners[triangle];

@@ -13,13 +13,13 @@
 namespace incise {
 namespace {
 
-/// A point counts as inside a tet down to this barycentric coordinate, so that points on shared faces are in one of the
-/// two.
+/// A point is inside a tet if no barycentric coordinate is below minus this, so that a point on a shared face is inside
+/// one of the two tets.
 constexpr double kInsideSlack = 1e-12;
 
 using TetCorners = std::array<Vec3, 4>;
 
-/// Barycentric coordinates of p; nullopt for a tet without volume.
+/// Returns the barycentric coordinates of p; nullopt for a tet without volume.
 std::optional<std::array<double, 4>> barycentric_of(const TetCorners& c, const Vec3& p) {
   const double volume = signed_volume(c[0], c[1], c[2], c[3]);
   if (volume == 0.0) return std::nullopt;
@@ -80,7 +80,7 @@ TetLocator& TetLocator::operator=(TetLocator&&) noexcept = default;
 std::optional<EmbeddedPoint> TetLocator::locate(const Vec3& p, double tolerance_mm) const {
   INCISE_REQUIRE(p.allFinite(), "the query point is not finite");
   INCISE_REQUIRE(tolerance_mm >= 0.0, fmt::format("expected a tolerance of 0 mm or more, found {}", tolerance_mm));
-  // Within (squared distance 0) the deepest tet counts, outside the nearest; among equals the first one.
+  // Inside tets (squared distance 0), take the tet in which p is deepest; outside, the nearest; of equals, the first.
   double best_squared = tolerance_mm * tolerance_mm;
   double best_depth = -std::numeric_limits<double>::infinity();
   std::optional<EmbeddedPoint> best;

@@ -25,7 +25,7 @@ double volume_mm3(const TetMesh& mesh) {
 
 double enclosed_volume_mm3(const TriMesh& surface) {
   if (surface.triangles.empty()) return 0.0;
-  // Tets towards a point of the surface itself, so that a body far from the origin loses no digits.
+  // The tets' common apex is a point of the surface, so a body far from the origin loses no digits.
   const Vec3 apex = vertex(surface.vertices, surface.triangles[0][0]);
   double volume = 0.0;
   for (const Triangle& t : surface.triangles) {
@@ -145,7 +145,7 @@ TetMesh make_block(const Vec3& size_mm, std::array<int, 3> cells) {
       }
     }
   }
-  // Each order of the axes is one tet: a walk along the cell's edges from its lowest to its highest corner.
+  // Each order of the axes gives one tet: a walk along the cell's edges from its lowest to its highest corner.
   constexpr std::array<std::array<int, 3>, 6> kWalks{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
   for (int k = 0; k < cells[2]; ++k) {
@@ -159,7 +159,7 @@ TetMesh make_block(const Vec3& size_mm, std::array<int, 3> cells) {
             ++at[static_cast<std::size_t>(kWalks[walk][step])];
             tet[step + 1] = id(at);
           }
-          if (walk >= 3) std::swap(tet[2], tet[3]);  // the odd orders of the axes turn the other way
+          if (walk >= 3) std::swap(tet[2], tet[3]);  // odd orders of the axes have the opposite orientation
           mesh.tets.push_back(tet);
         }
       }

@@ -34,18 +34,18 @@ int rises(const Neighbours& n) {
   return sum;
 }
 
-/// Whether the pixel can go without joining or parting anything: Yokoi's connectivity number for eight-connected sets
-/// is 1.
+/// Whether the pixel can be removed without connecting or separating anything: Yokoi's connectivity number for
+/// eight-connected sets is 1.
 bool is_simple(const Neighbours& n) {
   int number = 0;
   for (std::size_t k = 0; k < 8; k += 2) number += (1 - n[k]) - (1 - n[k]) * (1 - n[k + 1]) * (1 - n[(k + 2) % 8]);
   return number == 1;
 }
 
-/// One of the two half passes of Zhang and Suen: the first strips the south-east, the second the north-west. Of pixels
-/// that were chosen together, each goes only if it is still superfluous then; without this a square of 2 x 2 would
-/// vanish. Pixels with two neighbours, which the source strips too, stay; without this a slanting line two pixels wide
-/// would be eaten from its ends.
+/// One of the two half passes of Zhang and Suen: the first strips the south-east, the second the north-west. Returns
+/// whether a pixel was removed. Of pixels that were chosen together, each is removed only if it is still superfluous
+/// then; otherwise a square of 2 x 2 would vanish. Pixels with two neighbours, which the source also strips, stay;
+/// otherwise a slanting line two pixels wide would shrink from its ends.
 bool strip(Raster& raster, bool is_first) {
   std::vector<std::array<int, 2>> doomed;
   for (int j = 0; j < raster.height; ++j) {
@@ -73,8 +73,8 @@ bool strip(Raster& raster, bool is_first) {
   return has_changed;
 }
 
-/// Removes pixels one after the other, wherever `may_go` allows it, until nothing changes. Ends: every pass but the
-/// last removes one.
+/// Removes pixels one after the other, wherever `may_go` allows it, until nothing changes. Terminates, because every
+/// pass but the last removes a pixel.
 template <class MayGo>
 void remove_while(Raster& raster, const MayGo& may_go) {
   bool has_changed = true;
@@ -94,12 +94,12 @@ void remove_while(Raster& raster, const MayGo& may_go) {
 
 Raster thinned(Raster raster) {
   bool has_changed = true;
-  while (has_changed) {  // ends: every pass but the last removes a pixel
+  while (has_changed) {  // terminates: every pass but the last removes a pixel
     const bool first = strip(raster, true);
     const bool second = strip(raster, false);
     has_changed = first || second;
   }
-  // A corner of a staircase has two neighbours by side; an end has one at most and stays.
+  // A corner of a staircase has neighbours at two sides; an end has one at most and stays.
   remove_while(raster, [](const Neighbours& n) { return n[0] + n[2] + n[4] + n[6] > 1 && is_simple(n); });
   return raster;
 }

@@ -64,14 +64,14 @@ Reach reach_from(const Raster& skeleton, std::size_t start) {
   return reach;
 }
 
-/// `curve` filtered by a Gaussian over its points, `sigma` in points.
+/// Returns the points of a curve filtered by a Gaussian along it. @param sigma  in points.
 Points filtered(const Points& points, bool is_closed, double sigma) {
   const int n = static_cast<int>(points.size());
   const std::vector<double> kernel = gaussian_weights(sigma);
   const int reach = gaussian_reach(sigma);
   const auto point = [&](int i) -> Vec3 {
     if (is_closed) return points[static_cast<std::size_t>(((i % n) + n) % n)];
-    // Beyond an end the curve is continued by its own image through that end, which therefore stays where it is.
+    // Beyond an end, the curve continues as its point reflection through that end, so the end stays in place.
     if (i < 0) return 2.0 * points.front() - points[static_cast<std::size_t>(std::min(-i, n - 1))];
     if (i >= n) return 2.0 * points.back() - points[static_cast<std::size_t>(std::max(2 * (n - 1) - i, 0))];
     return points[static_cast<std::size_t>(i)];
@@ -100,7 +100,7 @@ std::optional<Contour> longest_path(const Raster& skeleton) {
   const Raster part = part_of(skeleton, parts, *largest);
   const auto start =
       static_cast<std::size_t>(std::find(part.pixels.begin(), part.pixels.end(), 1) - part.pixels.begin());
-  // In a tree the pixel farthest from any pixel is an end of the longest path.
+  // In a tree, the pixel farthest from any given pixel is an end of a longest path.
   const std::size_t one_end = reach_from(part, start).farthest;
   const Reach reach = reach_from(part, one_end);
   Contour path{.points = {}, .is_closed = false};
@@ -119,7 +119,8 @@ Contour smoothed(const Contour& curve, double sigma_mm) {
   const double spacing =
       length_mm(curve) / static_cast<double>(curve.is_closed ? curve.points.size() : curve.points.size() - 1);
   INCISE_REQUIRE(spacing > 0.0, "all points of the curve coincide, expected a positive length");
-  // Four times the curve's points even out everything, to rounding; a curve that is tiny beside sigma_mm costs no more.
+  // Four times the number of points already evens out everything, to rounding. The limit bounds the cost for a curve
+  // much shorter than sigma_mm.
   const double sigma = std::min(sigma_mm / spacing, 4.0 * static_cast<double>(curve.points.size()));
   const Points once = filtered(curve.points, curve.is_closed, sigma);
   const Points twice = filtered(once, curve.is_closed, sigma);

@@ -7,7 +7,8 @@
 
 namespace incise {
 
-/// Barycentric coordinates of the point of triangle (a, b, c) nearest to p; a flat triangle is taken as its edges.
+/// Returns the barycentric coordinates of the point of triangle (a, b, c) nearest to p. A flat triangle counts as its
+/// edges.
 inline Vec3 nearest_barycentric(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
   const Vec3 normal = (b - a).cross(c - a);
   const double squared = normal.squaredNorm();

@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kSamplesPerSpacing2 =
     10.0;  // candidates per spacing²: the thinned set then has no gaps wider than twice the spacing
-constexpr double kClearance = 1e-5;  // of the surface's size: how far above itself a point's ray starts
+constexpr double kClearance = 1e-5;  // share of the surface's size: height above a point at which its ray starts
 constexpr double kCrease =
-    0.82;  // cosine, 35 degrees: a triangle that is turned farther from a vertex's normal ends in a crease there
+    0.82;  // cosine, 35 degrees: a triangle that is tilted farther from a vertex's normal has a crease there
 
-/// The normal at each vertex: of its triangles, weighted by their angles there, which does not depend on how a flat
-/// part is cut up.
+/// Returns the unit normal at each vertex: the mean of its triangles' normals, weighted by their angles there, which
+/// does not depend on how a flat part is triangulated.
 Points vertex_normals(const TriMesh& surface) {
   Points normals(surface.vertices.size(), Vec3::Zero());
   for (const Triangle& triangle : surface.triangles) {
@@ -45,15 +45,16 @@ struct Sample {
   bool is_visible = false;
 };
 
-/// A triangle as a piece of a curved surface: its corners, and the surface's normals there. At a crease the triangle is
-/// flat: its own normal stands.
+/// A triangle as a piece of a curved surface: its corners, and the surface's normals there. At a crease, the normal is
+/// the triangle's own, so the piece stays flat.
 struct CurvedTriangle {
   std::array<Vec3, 3> corners;
   std::array<Vec3, 3> normals;
 
-  /// Where the surface lies beside the place with these barycentric weights: taken towards the planes that touch it in
-  /// the corners ([Boubekeur2008]), by half of the way. Half is exact for every quadratic surface: flat triangles cut
-  /// its corners by as much as half the planes' mean height, e.g. a sphere of 5 mm by 0.1 mm for edges of 2 mm.
+  /// Returns the point of the curved surface for these barycentric weights: the point of the triangle, moved half of
+  /// the way towards the tangent planes at the corners ([Boubekeur2008]). Half is exact for every quadratic surface,
+  /// from which a flat triangle deviates by half the planes' mean height: for example, from a sphere of radius 5 mm by
+  /// 0.1 mm for edges of 2 mm.
   [[nodiscard]] Sample at(const Vec3& weights) const {
     Sample sample{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), 0.0};
     for (std::size_t c = 0; c < 3; ++c) {
@@ -70,7 +71,7 @@ struct CurvedTriangle {
   }
 };
 
-/// The k-th of a sequence that fills the unit square evenly (R2 sequence, [Roberts2018]).
+/// Returns the k-th point of a sequence that fills the unit square evenly (R2 sequence, [Roberts2018]).
 Vec2 spread(std::uint64_t k) {
   constexpr double kA = 0.7548776662466927;
   constexpr double kB = 0.5698402909980532;
@@ -78,8 +79,8 @@ Vec2 spread(std::uint64_t k) {
   return {0.5 + kA * n - std::floor(0.5 + kA * n), 0.5 + kB * n - std::floor(0.5 + kB * n)};
 }
 
-/// Points evenly spread over all triangles that face the observer, each standing for an equal share of the area of its
-/// triangle. Small triangles get a sample once the area passed since the last one asks for it.
+/// Returns samples evenly spread over all triangles that face the observer; each represents `area_per_sample`. Small
+/// triangles get one whenever the area since the last sample amounts to that.
 std::vector<Sample> samples_of(const TriMesh& surface, const Vec3& to_observer, double least_cosine,
                                double area_per_sample) {
   const Points normals = vertex_normals(surface);
@@ -111,14 +112,14 @@ std::vector<Sample> samples_of(const TriMesh& surface, const Vec3& to_observer, 
   return samples;
 }
 
-/// Takes samples in a scattered order and keeps those that are no closer than `spacing` to one that is kept (dart
-/// throwing).
+/// Takes the visible samples in a scattered order and keeps each that is no closer than `spacing` to one already kept
+/// (dart throwing). Returns their indices, ascending.
 std::vector<std::size_t> thinned(const std::vector<Sample>& samples, double spacing) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (samples[i].is_visible) order.push_back(i);
   }
-  // A multiplicative hash of the number scatters neighbours without a random engine.
+  // A multiplicative hash of the index scatters neighbours without a random engine.
   const auto scattered = [](std::size_t i) { return (static_cast<std::uint64_t>(i) + 1) * 0x9E3779B97F4A7C15ULL; };
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return scattered(a) < scattered(b); });
 

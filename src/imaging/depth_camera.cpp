@@ -11,7 +11,7 @@
 namespace incise {
 namespace {
 
-/// Where the lens puts a direction (x, y, 1).
+/// Returns where lens distortion moves (x, y) of a direction (x, y, 1).
 Vec2 distorted(const CameraIntrinsics& camera, const Vec2& p) {
   const auto [k1, k2, p1, p2, k3] = camera.distortion;
   const double r2 = p.squaredNorm();
@@ -46,7 +46,7 @@ std::vector<Near> points_around(const OrganizedCloud& cloud, const Vec2& pixel, 
   return near;
 }
 
-/// Flying pixels between a near and a far surface belong to neither.
+/// Drops flying pixels: points between a near and a far surface that belong to neither.
 void drop_outliers(std::vector<Near>& near) {
   constexpr double kLeastToleranceMm = 0.2;
   std::vector<double> depths;
@@ -126,7 +126,8 @@ void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::pa
                     fmt::format("a point behind the camera, z {:.4g} mm", cloud.points[i].z()),
                     "points in front of the camera, z above 0", kHint);
   }
-  // Seen from the camera a row's neighbour lies to one side of a column's, everywhere but at edges that hide something.
+  // Seen from the camera, the right neighbour lies to the same side of the lower one everywhere, except at edges that
+  // hide something.
   std::size_t as_seen = 0, mirrored = 0;
   for (int v = 0; v + 1 < cloud.height; ++v) {
     for (int u = 0; u + 1 < cloud.width; ++u) {
@@ -161,7 +162,7 @@ std::optional<Vec3> position_at(const OrganizedCloud& cloud, const Vec2& pixel, 
     normal += basis * basis.transpose();
     right += basis * n.point.transpose();
   }
-  // The mean of the offsets tells whether the pixel lies beside what was measured.
+  // A large mean offset means that only one side of the pixel was measured.
   if (Vec2(normal(0, 1), normal(0, 2)).norm() / normal(0, 0) > 0.6 * window_px) return std::nullopt;
   const Mat3 solution = normal.ldlt().solve(right);
   if (!solution.allFinite()) return std::nullopt;

@@ -12,15 +12,15 @@
 namespace incise::imaging_detail {
 namespace {
 
-constexpr std::size_t kStepsTogether = 10;  // laid over one another: a finer scale may run along a part of the row
+constexpr std::size_t kStepsTogether = 10;  // overlaid: a finer scale may run along only part of the row
 constexpr std::size_t kFewestSteps = 6;
 // Between the ticks of a sound ruler (8 grey levels of noise, JPEG) the median of 10 steps stays below 1 grey level.
-constexpr double kLeastContrast = 0.06;  // of the ticks'
+constexpr double kLeastContrast = 0.06;  // relative to the ticks' contrast
 constexpr double kLeastGreys = 4.0;
-constexpr double kBesideTick = 0.14;  // of the spacing: nearer lies the tick's own rim
+constexpr double kBesideTick = 0.14;  // of the spacing: nearer is the tick's own rim
 constexpr double kLeastBesidePx = 2.5;
 
-/// The ends at which the ticks stand in line, one for each tick, and the direction from there along the ticks.
+/// The ends of the ticks that lie in line, one for each tick, and the direction from there along the ticks.
 struct Feet {
   std::vector<Vec2> places;
   Vec2 inward;
@@ -65,7 +65,7 @@ Feet feet_of(const Comb& comb) {
   return best;
 }
 
-/// Darkness against both sides, over places from tick to tick (columns) and along the ticks (rows).
+/// Darkness relative to both sides, by position from tick to tick (columns) and along the ticks (rows).
 class Overlay {
  public:
   Overlay(const cv::Mat& grey, const Feet& feet, double spacing_px, double length_px, double width_px)
@@ -79,7 +79,8 @@ class Overlay {
         window_(std::max<std::size_t>(3, static_cast<std::size_t>(0.15 * length_px))),
         width_px_(width_px) {}
 
-  /// The median over some steps, each given by its first tick, averaged along the ticks over a short window.
+  /// Returns the darkest mark between ticks: median over the steps (each given by its first tick), averaged along the
+  /// ticks over a short window. Returns nullopt if it is too faint.
   [[nodiscard]] std::optional<FinerTicks> look_at(const std::vector<std::size_t>& steps) const {
     const double margin = std::max(kBesideTick, (0.75 * width_px_ + kLeastBesidePx) / spacing_px_);
     double best = 0.0, share = 0.0, tick = 0.0;
@@ -150,7 +151,7 @@ std::optional<FinerTicks> finer_ticks(const cv::Mat& grey, const Comb& comb) {
 
 bool every_second_is_longer(const Comb& comb) {
   constexpr double kLonger = 1.15;
-  constexpr double kShare = 0.75;  // of the ticks on their side of the middle: every fifth and tenth is longer as well
+  constexpr double kShare = 0.75;  // least share of ticks on their group's side; every fifth and tenth is longer too
   std::array<std::vector<double>, 2> lengths;
   for (std::size_t i = 0; i < comb.ticks.size(); ++i)
     lengths[static_cast<std::size_t>(std::llround(comb.numbers[i])) % 2].push_back(comb.ticks[i].length);

@@ -7,19 +7,19 @@
 
 namespace incise::imaging_detail {
 
-/// A mark between two neighbouring ticks of most of a row.
+/// A mark that recurs between neighbouring ticks of a row.
 struct FinerTicks {
-  double share = 0.0;     ///< its place between the two ticks, (0, 1)
-  double contrast = 0.0;  ///< its darkness as a share of the ticks'
+  double share = 0.0;     ///< its position between the two ticks, (0, 1)
+  double contrast = 0.0;  ///< its darkness relative to the ticks'
 };
 
-/// Looks for a scale that is finer than the ticks that were found, in the grey values themselves: ticks too faint or
-/// too short to be strokes. The pictures from each tick to the next are laid over one another, and what most of them
-/// show at one place is no letter and no speck. @pre the comb has 8 ticks or more
+/// Searches the grey values for a scale finer than the ticks found: ticks too faint or too short to be strokes. The
+/// intervals from tick to tick are overlaid; a mark at the same place in most of them is neither a letter nor a speck.
+/// @pre the comb has at least 8 ticks
 [[nodiscard]] std::optional<FinerTicks> finer_ticks(const cv::Mat& grey, const Comb& comb);
 
-/// Whether every second tick is longer than its neighbours: a scale of halves (half millimetres, sixteenths of an
-/// inch). A scale of tenths has longer ticks at every fifth and tenth.
+/// Returns whether every second tick is longer than its neighbours: a scale of halves (half millimetres, sixteenths of
+/// an inch). On a scale of tenths, every fifth and tenth tick is longer.
 [[nodiscard]] bool every_second_is_longer(const Comb& comb);
 
 }  // namespace incise::imaging_detail

@@ -16,10 +16,10 @@ namespace {
 constexpr double kRedHueDeg = 22.0;
 constexpr double kGreenHueDeg = 145.0;
 constexpr float kHueFall = 0.6F;
-/// How far strength follows the opposite colour: a thin green line that a lens and JPEG have mixed with red tissue may
-/// end up grey, which is greener than the tissue.
+/// How far strength may go below 0: lens and JPEG may mix a thin green line with red tissue to grey, which is still
+/// greener than the tissue.
 constexpr float kBeyondGrey = 0.05F;
-/// Added to the lightness that chroma is divided by: in deep shadow a colour is noise.
+/// Added to the lightness by which chroma is divided: in deep shadow, colour is noise.
 constexpr float kShadow = 0.05F;
 constexpr int kGlareLevel = 238;  // of 255, in the darkest channel
 constexpr int kGlareSkirtPx = 2;
@@ -36,7 +36,7 @@ class Tables {
     for (int i = 0; i <= kSteps + 1; ++i)
       root_[static_cast<std::size_t>(i)] = static_cast<float>(std::cbrt(static_cast<double>(i) / kSteps));
   }
-  /// Of the sRGB curve.
+  /// Linear light of an sRGB value.
   [[nodiscard]] float linear(std::uint8_t value) const { return linear_[value]; }
   /// Cube root on [0, 1].
   [[nodiscard]] float root(float x) const {
@@ -62,13 +62,14 @@ struct Direction {
   float c, s;
 };
 
-/// The picture made small, and which of its pixels are tissue.
+/// The pixels of the reduced picture that are tissue.
 struct Tissue {
   cv::Mat mask;  ///< 8 bits, 255 = tissue
-  int step = 1;  ///< pixels of the picture to one of the mask, in each direction
+  int step = 1;  ///< pixels of the picture per pixel of the mask, in each direction
 };
 
-/// Tissue is reddish; paper, steel, gloves and char are not. Where next to nothing is, everything counts as tissue.
+/// Finds tissue, which is reddish; paper, steel, gloves and char are not. If almost nothing is reddish, everything
+/// counts as tissue.
 Tissue tissue_in(const cv::Mat& red) {
   constexpr int kWidth = 200;
   constexpr double kLeastRedness = 0.025;
@@ -82,7 +83,7 @@ Tissue tissue_in(const cv::Mat& red) {
   return tissue;
 }
 
-/// What is no tissue takes the mean of the tissue in a window around it, or of all tissue where there is none.
+/// Gives pixels outside tissue the mean of the tissue in a window around them or, if there is none, of all tissue.
 void fill_from_tissue(cv::Mat& values, const Tissue& tissue, int window) {
   cv::Mat weight, sum, share;
   tissue.mask.convertTo(weight, CV_32F, 1.0 / 255.0);
@@ -99,16 +100,16 @@ void fill_from_tissue(cv::Mat& values, const Tissue& tissue, int window) {
   }
 }
 
-/// About a quarter of the picture.
+/// Window of the background's median, pixels: about a quarter of the reduced picture.
 int window_of_median(const cv::Mat& small) {
   return std::clamp(std::min(small.cols, small.rows) / 4, 3, 61) | 1;
 }
 
-/// The tissue without a broad band of the ink itself, where one fills so much of the median's window that the median
-/// would take it for tissue; nullopt where it does not.
+/// Returns the tissue without a broad band of the ink, if the band fills so much of the median's window that the median
+/// would count it as tissue; otherwise nullopt.
 std::optional<Tissue> tissue_beside_band(const cv::Mat& strength, const Tissue& tissue, double contrast) {
   constexpr double kInk = 0.6;         // of the contrast, above the tissue's median
-  constexpr double kMostShare = 0.25;  // a median that half of its window upsets
+  constexpr double kMostShare = 0.25;  // of the window; half of it would spoil the median
   cv::Mat small, share;
   cv::resize(strength, small, tissue.mask.size(), 0, 0, cv::INTER_AREA);
   std::vector<float> values;
@@ -132,9 +133,9 @@ std::optional<Tissue> tissue_beside_band(const cv::Mat& strength, const Tissue& 
   return result;
 }
 
-/// What the tissue around has of the colour: the median over about a quarter of the picture.
+/// Returns the strength of the surrounding tissue: the median over about a quarter of the picture.
 cv::Mat local_background(const cv::Mat& strength, const Tissue& tissue) {
-  constexpr double kFullScale = 0.6;  // of 255 steps from kBeyondGrey below 0; strengths beyond belong to no tissue
+  constexpr double kFullScale = 0.6;  // 255 steps from -kBeyondGrey; no tissue has greater strength
   cv::Mat small, bytes;
   cv::resize(strength, small, tissue.mask.size(), 0, 0, cv::INTER_AREA);
   const int window = window_of_median(small);
@@ -142,13 +143,13 @@ cv::Mat local_background(const cv::Mat& strength, const Tissue& tissue) {
   small.convertTo(bytes, CV_8U, 255.0 / kFullScale, kBeyondGrey * 255.0 / kFullScale);
   cv::medianBlur(bytes, bytes, window);
   bytes.convertTo(small, CV_32F, kFullScale / 255.0, -kBeyondGrey);
-  cv::GaussianBlur(small, small, {0, 0}, 2.0);  // no steps of 1/255 of full scale
+  cv::GaussianBlur(small, small, {0, 0}, 2.0);  // removes the steps of 1/255 of full scale
   cv::Mat result;
   cv::resize(small, result, strength.size(), 0, 0, cv::INTER_LINEAR);
   return result;
 }
 
-/// Standard deviation of the tissue's bulk, from the median absolute value of every seventh of its pixels.
+/// Returns a robust standard deviation of the tissue, from the median absolute value of every seventh pixel.
 double spread_of(const cv::Mat& difference, const Tissue& tissue) {
   std::vector<float> values;
   values.reserve(difference.total() / 7 + 1);
@@ -164,7 +165,7 @@ double spread_of(const cv::Mat& difference, const Tissue& tissue) {
   return 1.4826 * median(values);
 }
 
-/// The value that `count` pixels exceed.
+/// Returns the value that `count` pixels exceed.
 double level_exceeded_by(const cv::Mat& values, std::size_t count) {
   constexpr int kBins = 4096;
   std::vector<std::size_t> bins(kBins, 0);
@@ -181,9 +182,9 @@ double level_exceeded_by(const cv::Mat& values, std::size_t count) {
   return 0.0;
 }
 
-/// Where the picture is burnt out. White paper is as bright and hides nothing: what is nearly as bright and fills this
-/// share of the picture is no highlight.
-/// @param darkest  of each pixel's channels, 8 bits
+/// Finds highlights, where the picture is burnt out. White paper is as bright but hides nothing: a nearly as bright
+/// area that fills kLeastPaper of the picture is not a highlight.
+/// @param darkest  value of each pixel's darkest channel, 8 bits
 cv::Mat glare_in(const cv::Mat& darkest) {
   constexpr int kPaperLevel = 215;
   constexpr double kLeastPaper = 0.05;
@@ -201,7 +202,7 @@ cv::Mat glare_in(const cv::Mat& darkest) {
     cv::resize(paper, is_paper, glare.size(), 0, 0, cv::INTER_NEAREST);
     glare.setTo(cv::Scalar(0), is_paper);
   }
-  // A highlight's skirt is not burnt out, but has lost its colour, too.
+  // The skirt of a highlight is not burnt out, but has lost its colour too.
   const int width = 2 * kGlareSkirtPx + 1;
   cv::dilate(glare, glare, cv::getStructuringElement(cv::MORPH_RECT, {width, width}));
   return glare;
@@ -223,7 +224,7 @@ InkStrengths ink_strengths(const ColorPicture& picture) {
     auto* green_row = result.green.ptr<float>(y);
     auto* darkest_row = darkest.ptr<std::uint8_t>(y);
     for (int x = 0; x < picture.width; ++x, rgb += 3) {
-      // OKLab (Ottosson 2020). A change of light multiplies L, a and b alike, so that a/L and b/L do not see it.
+      // OKLab (Ottosson 2020). A change of light multiplies L, a and b alike, so a/L and b/L do not change.
       const float r = tables.linear(rgb[0]), g = tables.linear(rgb[1]), b = tables.linear(rgb[2]);
       const float l = tables.root(0.4122214708F * r + 0.5363325363F * g + 0.0514459929F * b);
       const float m = tables.root(0.2119034982F * r + 0.6806995451F * g + 0.1073969566F * b);
@@ -241,8 +242,8 @@ InkStrengths ink_strengths(const ColorPicture& picture) {
 }
 
 InkMap ink_map(const InkStrengths& strengths, InkColor color, double mm_per_pixel) {
-  // Least contrast that counts as a line: tissue itself varies in redness, by about half of it; nothing on it is green,
-  // but grey stands 0.05 above it.
+  // Least contrast of a line. The redness of tissue itself varies by about half of this. Nothing on tissue is green,
+  // but grey is 0.05 above it.
   constexpr double kLeastRed = 0.07;
   constexpr double kLeastGreen = 0.07;
   constexpr double kShortestLineMm = 8.0;

@@ -6,7 +6,7 @@
 
 namespace incise::imaging_detail {
 
-/// How much of an ink's colour each pixel has, whatever the light: chroma over lightness along the ink's hue.
+/// The amount of each ink's colour in each pixel, independent of the light: chroma over lightness along the ink's hue.
 struct InkStrengths {
   cv::Mat red;    ///< height x width, float
   cv::Mat green;  ///< height x width, float
@@ -14,18 +14,19 @@ struct InkStrengths {
 };
 [[nodiscard]] InkStrengths ink_strengths(const ColorPicture& picture);
 
-/// An ink held against the tissue that it lies on.
+/// An ink relative to the tissue on which it lies.
 struct InkMap {
-  cv::Mat likelihood;     ///< height x width, float: 0 = the tissue around, 1 = the ink; smoothed over a pixel
-  double contrast = 0.0;  ///< ink over tissue, in units of strength
-  double noise = 0.0;     ///< of the tissue, same units
+  cv::Mat likelihood;     ///< height x width, float: 0 = surrounding tissue, 1 = ink; smoothed over about a pixel
+  double contrast = 0.0;  ///< strength of the ink minus the tissue's
+  double noise = 0.0;     ///< standard deviation of the tissue's strength
   bool is_present = false;
 };
-/// Against the tissue around: what is not reddish (paper, instruments, char) is no tissue, and not looked at.
-/// @param mm_per_pixel  > 0: 8 mm of line, one pixel wide, are the least that counts.
+/// Measures an ink relative to the surrounding tissue. Pixels that are not reddish (paper, instruments, char) do not
+/// count as tissue.
+/// @param mm_per_pixel  > 0; sets the least area of ink: a line 8 mm long and one pixel wide.
 [[nodiscard]] InkMap ink_map(const InkStrengths& strengths, InkColor color, double mm_per_pixel);
 
-/// Likelihood between pixels, bilinear; 0 outside the picture.
+/// Returns the value between pixels, bilinear; 0 outside the picture.
 [[nodiscard]] inline double sampled(const cv::Mat& map, double u, double v) {
   const int iu = static_cast<int>(std::floor(u));
   const int iv = static_cast<int>(std::floor(v));

@@ -9,11 +9,11 @@ namespace incise::imaging_detail {
 namespace {
 
 constexpr double kStepPx = 0.5;          // along a profile
-constexpr double kLeastPeak = 0.4;       // likelihood on the line
-constexpr double kFoot = 0.3;            // likelihood that still belongs to the line
-constexpr double kEdgeMarginPx = 3.0;    // of blur on either side of an edge
-constexpr double kPlateauPx = 8.0;       // over which the level beside an edge is taken
-constexpr double kWidthRange = 0.4;      // least share of the median width
+constexpr double kLeastPeak = 0.4;       // least likelihood at the line's peak
+constexpr double kFoot = 0.3;            // least likelihood that belongs to the line
+constexpr double kEdgeMarginPx = 3.0;    // blur on either side of an edge
+constexpr double kPlateauPx = 8.0;       // length over which the level beside an edge is averaged
+constexpr double kWidthRange = 0.4;      // widths from this share of the median to its inverse are accepted
 constexpr std::size_t kMedianReach = 6;  // points on either side
 
 /// Likelihood along the normal: value i lies at -reach + i kStepPx.
@@ -45,10 +45,10 @@ bool has_glare(const cv::Mat& glare, const Vec2& p, const Vec2& normal, double f
 
 struct Found {
   double offset_px;
-  double from_px, to_px;  ///< part of the normal that the answer rests on
+  double from_px, to_px;  ///< part of the normal used for the result
 };
 
-/// Centre of mass of the colour on the piece of the profile about its peak.
+/// Returns the centre of mass of the colour around the profile's peak.
 std::optional<Found> middle_of(const Profile& profile) {
   const auto& t = profile.values;
   const std::size_t peak = static_cast<std::size_t>(std::max_element(t.begin(), t.end()) - t.begin());
@@ -56,7 +56,7 @@ std::optional<Found> middle_of(const Profile& profile) {
   std::size_t first = peak, last = peak;
   while (first > 0 && t[first - 1] > kFoot) --first;
   while (last + 1 < t.size() && t[last + 1] > kFoot) ++last;
-  if (first == 0 || last + 1 == t.size()) return std::nullopt;  // it goes on beyond the reach
+  if (first == 0 || last + 1 == t.size()) return std::nullopt;  // continues beyond the reach
   double mass = 0.0, moment = 0.0;
   for (std::size_t i = first; i <= last; ++i) {
     const double weight = std::min(t[i], 1.2) - kFoot;
@@ -78,7 +78,7 @@ double mean_between(const Profile& profile, double from, double to) {
   return count > 0 ? sum / count : 0.0;
 }
 
-/// First place, from inside out, where the profile rises through a level and stays above it.
+/// Returns the first place, from inside outwards, where the profile rises through a level and stays above it.
 std::optional<double> rise_through(const Profile& profile, double level, double from) {
   const auto& t = profile.values;
   for (std::size_t i = 0; i + 1 < t.size(); ++i) {
@@ -89,7 +89,7 @@ std::optional<double> rise_through(const Profile& profile, double level, double 
   return std::nullopt;
 }
 
-/// Half-way between what lies inside the band's inner border and the band itself.
+/// Returns the place where the colour is half-way between the level inside the ring and the level of the band.
 std::optional<Found> inner_edge_of(const Profile& profile, double width_px) {
   const std::optional<double> rough = rise_through(profile, 0.5, -profile.reach_px);
   if (!rough) return std::nullopt;
@@ -102,7 +102,7 @@ std::optional<Found> inner_edge_of(const Profile& profile, double width_px) {
   return Found{*edge, *edge - kEdgeMarginPx, *edge + 2.0 * kEdgeMarginPx};
 }
 
-/// Points whose neighbours say something quite different see something else than the line.
+/// Marks points as unseen if their offset differs too much from their neighbours' median: they lie on something else.
 void reject_outliers(const std::vector<double>& offsets, std::vector<bool>& is_seen, bool is_closed,
                      double tolerance_px) {
   const std::size_t n = offsets.size();
@@ -119,7 +119,7 @@ void reject_outliers(const std::vector<double>& offsets, std::vector<bool>& is_s
   }
 }
 
-/// Neighbours of a place that was not seen see part of what hides it: they are not trusted either.
+/// Returns the trusted points: seen, and not next to an unseen one, because what hides it affects its neighbours too.
 std::vector<bool> trusted(const std::vector<bool>& is_seen, bool is_closed) {
   constexpr std::size_t kMargin = 4;
   const std::size_t n = is_seen.size();
@@ -134,7 +134,7 @@ std::vector<bool> trusted(const std::vector<bool>& is_seen, bool is_closed) {
   return result;
 }
 
-/// Mean direction of the trusted points from i on, forwards or backwards; as if walking forwards.
+/// Returns the mean direction of the trusted points next to i, after or before it; always in the line's direction.
 Vec2 direction_beside(const Line& line, const std::vector<bool>& is_trusted, bool is_closed, std::size_t i,
                       bool forwards) {
   constexpr std::size_t kReach = 20;
@@ -150,8 +150,8 @@ Vec2 direction_beside(const Line& line, const std::vector<bool>& is_trusted, boo
   return along.norm() > 0.0 ? Vec2(along.normalized()) : Vec2::Zero();
 }
 
-/// Bridges places without trust by the cubic that leaves and arrives along the line (Hermite); ends of an open line
-/// stay.
+/// Replaces untrusted stretches by Hermite cubics that continue the line's direction at both ends; the ends of an open
+/// line stay.
 void bridge(Line& line, const std::vector<bool>& is_trusted, bool is_closed) {
   const std::size_t n = line.size();
   const auto first =

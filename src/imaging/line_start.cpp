@@ -11,7 +11,7 @@ namespace incise::imaging_detail {
 namespace {
 
 constexpr int kLeastSpeckPixels = 12;
-constexpr double kRingLikeness = 0.3;  // an enclosed place of this share of the largest one's radius is a ring, too
+constexpr double kRingLikeness = 0.3;  // least radius of another ring, relative to the largest
 
 double signed_area(const Line& line) {  // positive: counter-clockwise on a screen, where v runs down
   double twice = 0.0;
@@ -30,7 +30,7 @@ cv::Mat distance_to_ink(const cv::Mat& mask) {
   return distance;
 }
 
-/// From the rolling disc's centre to the ink that it touches.
+/// Returns the place on the ink that the rolling disc centred at p touches.
 Vec2 foot_of(const cv::Mat& distance, const cv::Point& p) {
   const int u = std::clamp(p.x, 1, distance.cols - 2);
   const int v = std::clamp(p.y, 1, distance.rows - 2);
@@ -41,7 +41,7 @@ Vec2 foot_of(const cv::Mat& distance, const cv::Point& p) {
   return Vec2(p.x, p.y) - gradient / norm * distance.at<float>(v, u);
 }
 
-/// Number of the connected piece of `near_ink` that borders on an enclosed place.
+/// Returns the number of the connected piece, of pixels within a disc radius of ink, that borders on an enclosed place.
 int neighbor_piece(const cv::Mat& pieces, const cv::Mat& places, int place) {
   for (int v = 1; v < places.rows; ++v) {
     for (int u = 1; u < places.cols; ++u) {
@@ -66,7 +66,7 @@ Line border_of(const cv::Mat& places, int place, const cv::Mat& distance) {
 }  // namespace
 
 cv::Mat ink_mask(const InkMap& map) {
-  constexpr double kGreyIsNoInk = 0.06;  // what has lost its colour on coloured tissue does not count
+  constexpr double kGreyIsNoInk = 0.06;  // colourless places on coloured tissue do not count
   return without_specks(map.likelihood > std::max(0.5, kGreyIsNoInk / map.contrast), kLeastSpeckPixels);
 }
 
@@ -135,8 +135,8 @@ RollingResult roll_inside(const MaskWindow& window, double disc_radius_px) {
 
 namespace {
 
-/// Shortest ways from one cell over a coarse grid whose cells cost more the farther they lie from ink; negative:
-/// closed.
+/// Shortest ways from one cell of a coarse grid to all others. A cell costs more the farther it is from ink; cells of
+/// negative cost are closed.
 struct Ways {
   std::vector<double> length;
   std::vector<int> from;

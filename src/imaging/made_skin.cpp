@@ -43,7 +43,7 @@ unsigned MadeSkin::sides_near(const Sides& sides, const Vec3& place) const {
 
 std::optional<std::int32_t> MadeSkin::side_at(const Sides& sides, const Vec3& place, const Vec3& normal) const {
   if (sides.empty()) return std::nullopt;
-  constexpr double kAlike = 0.5;  // skin beside a face, at a right angle to it, is the specimen's own
+  constexpr double kAlike = 0.5;  // cosine; skin at a right angle to a cut face is natural
   const unsigned near = sides_near(sides, place);
   for (std::int32_t side = 0; side < 6; ++side) {
     if ((near & 1U << side) != 0 && normal.dot(outward(grid_, side)) >= kAlike) return side;

@@ -16,12 +16,12 @@ namespace {
 
 constexpr double kPointStepPx = 2.0;  // between the points of a line
 constexpr double kLeastDiscPx = 2.0;
-constexpr double kDiscOfGap = 0.65;         // of the rolling disc's radius to the gap that it must not pass
+constexpr double kDiscOfGap = 0.65;         // radius of the rolling disc over the gap that it must not pass
 constexpr double kWidestHiddenMm = 8.0;     // a painted band that crosses the other line hides at most this much of it
 constexpr double kLeastRingRadiusMm = 0.6;  // the inside of a tumour of 2 mm with a line of 12 pixels
-constexpr double kLeastLineMm = 3.0;        // the inner border of a ring too small to be a tumour: that is said later
-constexpr double kGapToleranceMm = 0.18;    // where a gap's ends are not known better: blur eats at them,
-constexpr double kGapTolerancePx = 2.0;     // and the line has points only so often
+constexpr double kLeastLineMm = 3.0;        // a ring too small to be a tumour passes: it is refused later
+constexpr double kGapToleranceMm = 0.18;    // uncertainty of a gap's length: its ends are blurred,
+constexpr double kGapTolerancePx = 2.0;     // and the points of the line are this far apart
 constexpr int kPasses = 4;
 
 struct Start {
@@ -48,17 +48,17 @@ void require_one_ring(const RollingResult& rolled, InkColor color, double mm_per
                                   : "Cut the picture so that it shows one incision.");
 }
 
-/// The ring that the ink encloses, tried with wider and wider discs; without one, the longest line.
+/// Returns the ring that the ink encloses, tried with wider and wider discs or, if there is none, the longest line.
 Start start_of(const cv::Mat& mask, InkColor color, const LineSettings& settings, const std::filesystem::path& name) {
   const double gap_px = std::max(settings.max_gap_mm, 0.3) / settings.mm_per_pixel;
   std::array<double, 3> discs{std::max(kLeastDiscPx, kDiscOfGap * gap_px),
                               std::max(2.0 * kLeastDiscPx, 2.0 * kDiscOfGap * gap_px),
                               std::max(4.0 * kLeastDiscPx, 4.0 * kDiscOfGap * gap_px)};
   const double bridge_px = discs.front();
-  // An opening of a band may be narrow at its outer end only: a disc that enters it would take its walls for the
+  // The opening of a band may be narrow only at its outer end: a disc that enters it would follow its walls as the
   // border.
   if (settings.edge == LineEdge::Inner) std::swap(discs[0], discs[1]);
-  // A disc as large as the picture rolls nowhere; a picture with a rim for it might not fit into memory.
+  // A disc as large as the picture cannot roll, and a picture with a rim for it might not fit into memory.
   const double largest = 0.5 * std::max(mask.cols, mask.rows);
   if (bridge_px > largest) {
     refuse(name, fmt::format("a picture {:.3g} mm wide", mask.cols * settings.mm_per_pixel),
@@ -72,7 +72,7 @@ Start start_of(const cv::Mat& mask, InkColor color, const LineSettings& settings
   for (const double disc : discs) {
     const RollingResult rolled = roll_inside(*window, disc);
     if (rolled.inner_border.size() < 8 || rolled.radius_px * settings.mm_per_pixel < kLeastRingRadiusMm) continue;
-    // A wider disc only counts where the narrower ones found nothing but small loops.
+    // A wider disc counts only if the narrower ones found nothing but small loops.
     if (rolled.radius_px < 2.0 * best.radius_px) continue;
     best = rolled;
     require_one_ring(rolled, color, settings.mm_per_pixel, name);
@@ -104,7 +104,7 @@ RefinedLine refined(Start& start, const InkMap& map, const cv::Mat& mask, const 
   return result;
 }
 
-/// Runs of points that were not seen. On a ring they may run over its start.
+/// A run of unseen points. On a ring it may pass the start.
 struct Run {
   std::size_t first = 0;
   std::size_t count = 0;
@@ -113,7 +113,7 @@ std::vector<Run> unseen_runs(const std::vector<bool>& is_seen, bool is_closed) {
   const std::size_t n = is_seen.size();
   std::vector<Run> runs;
   std::size_t begin = 0;
-  if (is_closed) {  // start behind a point that was seen
+  if (is_closed) {  // start at a seen point
     begin = static_cast<std::size_t>(std::find(is_seen.begin(), is_seen.end(), true) - is_seen.begin());
     if (begin == n) return {{0, n}};
   }

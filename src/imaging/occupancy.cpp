@@ -9,22 +9,22 @@
 namespace incise {
 namespace {
 
-// All lengths in this file are voxels: partial volume and point spread blur a border over a number of voxels, not of
+// All lengths in this file are in voxels: partial volume and point spread blur a border over a number of voxels, not of
 // millimetres.
 constexpr float kBand = 2.3F;           // border voxels lie at most this far from the other side
-constexpr float kPureFrom = 2.8F;       // at least so far from the other side, a voxel shows one material only
-constexpr float kPureTo = 6.0F;         // and farther away than this it says nothing about the border
+constexpr float kPureFrom = 2.8F;       // a voxel at least this far from the other side contains one material only
+constexpr float kPureTo = 6.0F;         // farther away, it says nothing about the border
 constexpr double kMeanRadius = 2.0;     // standard deviation of the local means
-constexpr float kLeastWeight = 0.002F;  // of pure voxels near by, for a mean to count
+constexpr float kLeastWeight = 0.002F;  // of nearby pure voxels, for a mean to count
 constexpr float kLeastContrast =
-    40.0F;  // HU between inside and outside; below it gray values say nothing about the border
+    40.0F;  // HU between inside and outside; below it, gray values say nothing about the border
 
 VolumeGrid in_voxels(VolumeGrid grid) {
   grid.spacing_mm = Vec3::Ones();
   return grid;
 }
 
-// Mean HU of the chosen voxels near every voxel; NaN where there are none.
+// Returns the mean HU of the chosen voxels near every voxel; NaN where there are none.
 std::vector<float> local_mean(const CtVolume& hu, const std::vector<std::uint8_t>& chosen, Workers& workers) {
   const VolumeGrid grid = in_voxels(hu.grid);
   GrayVolume weight{grid, std::vector<float>(chosen.size())};
@@ -41,8 +41,8 @@ std::vector<float> local_mean(const CtVolume& hu, const std::vector<std::uint8_t
   return std::move(sum.voxels);
 }
 
-// A thin gap has no pure voxel, or its neighbours are of another kind: there, the most foreign HU within two voxels
-// stands for it.
+// Returns the HU farthest from tissue within two voxels, outside the body. It replaces the local mean in a thin gap,
+// which has no pure voxel, or only ones of another material.
 float most_foreign(const CtVolume& hu, const Mask& body, int i, int j, int k, bool low_side) {
   float found = std::numeric_limits<float>::quiet_NaN();
   for (int c = std::max(0, k - 2); c <= std::min(hu.grid.size[2] - 1, k + 2); ++c)
@@ -55,7 +55,7 @@ float most_foreign(const CtVolume& hu, const Mask& body, int i, int j, int k, bo
   return found;
 }
 
-// Whether no mixture of tissue and those surroundings has that gray value; also if there are none.
+// Returns whether no mixture of tissue and these surroundings can have that gray value; true if there are none.
 bool is_odd(float hu, float outside, bool low_side) {
   return std::isnan(outside) || (low_side ? hu < outside - kLeastContrast : hu > outside + kLeastContrast);
 }
@@ -83,8 +83,8 @@ Surroundings find_surroundings(const CtVolume& hu, const Mask& body, const GrayV
   return {local_mean(hu, inside, workers), local_mean(hu, low, workers), local_mean(hu, high, workers)};
 }
 
-// Share of tissue in a voxel of gray value `hu` between pure tissue and pure surroundings; `otherwise` if they look
-// alike.
+// Returns the share of tissue in a voxel of gray value `hu` between pure tissue and pure surroundings; `otherwise` if
+// the two look alike.
 float share(float hu, float inside, float outside, float otherwise) {
   if (!(std::abs(inside - outside) >= kLeastContrast)) return otherwise;
   return std::clamp((hu - outside) / (inside - outside), 0.0F, 1.0F);
@@ -110,8 +110,8 @@ GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mas
         const auto value = static_cast<float>(hu.voxels[v]);
         const bool is_below = value < settings.window_low_hu;
         const bool is_above = value > settings.window_high_hu;
-        // Tissue that is not the body was cut off by the region or the opening, sharply; a filled cavity is the body,
-        // whatever it holds.
+        // The region or the opening cuts sharply: tissue that it cut off the body keeps its label. So does a filled
+        // cavity, whatever it contains.
         if (region.voxels[v] == 0 || is_body == (is_below || is_above)) continue;
         if ((is_body ? to_outside : to_body).voxels[v] > kBand) continue;
         if (std::isnan(near.inside[v])) continue;
@@ -128,7 +128,7 @@ namespace {
 
 constexpr int kSamples = 6;  // along each edge of a cell that the surface crosses
 
-/// How many of the samples in a cell have at least the level.
+/// Returns the number of samples in a cell that reach the level.
 int samples_within(const std::array<double, 8>& corner, double level) {
   int count = 0;
   for (int c = 0; c < kSamples; ++c)
@@ -154,7 +154,7 @@ double iso_volume_mm3(const GrayVolume& values, double level, Workers& workers) 
   workers.for_each(layers, 1, [&](std::size_t layer) {
     const int k = static_cast<int>(layer);
     for (int j = 0; j + 1 < grid.size[1]; ++j) {
-      std::array<const float*, 4> rows{};  // of the corners (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)
+      std::array<const float*, 4> rows{};  // rows of corners at (j, k), (j + 1, k), (j, k + 1), (j + 1, k + 1)
       for (int r = 0; r < 4; ++r)
         rows[static_cast<std::size_t>(r)] = values.voxels.data() + grid.offset(0, j + (r & 1), k + (r >> 1));
       for (int i = 0; i + 1 < grid.size[0]; ++i) {

@@ -6,12 +6,12 @@
 
 namespace incise {
 
-/// Share of every voxel that is tissue, [0, 1], from the CT's gray values near the body's border; see `segment`. All on
-/// one grid.
+/// Returns the fraction of every voxel that is tissue, [0, 1], from the CT's gray values near the body's border; see
+/// `segment`. @pre all on one grid.
 [[nodiscard]] GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mask& body,
                                              const SegmentationSettings& settings, Workers& workers);
 
-/// Volume, mm³, where the trilinear interpolation of the values between voxel centres is at least `level`.
+/// Returns the volume, mm³, in which the trilinear interpolation between voxel centres is at least `level`.
 [[nodiscard]] double iso_volume_mm3(const GrayVolume& values, double level, Workers& workers);
 
 }  // namespace incise

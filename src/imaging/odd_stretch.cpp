@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kFeatures = 3;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// What is compared along a line, and by how much of its median it may wander.
+/// A feature that is compared along a line, and the share of its median by which it may always differ.
 struct Feature {
   const char* name;
   double least_share;
@@ -23,7 +23,7 @@ struct Feature {
 constexpr std::array<Feature, kFeatures> kCompared{
     {{"width", 0.35}, {"strength of colour", 0.25}, {"lightness", 0.20}}};
 constexpr double kSpreads = 6.0;     // times the line's own spread (1.48 times the median deviation)
-constexpr double kLeastKnown = 0.6;  // share of a stretch that has to be seen
+constexpr double kLeastKnown = 0.6;  // share of a stretch that must be known
 
 using Values = std::array<std::vector<double>, kFeatures>;
 
@@ -38,7 +38,7 @@ bool is_hidden_at(const cv::Mat& hidden, const Vec2& p) {
   return !hidden.empty() && cv::Rect(0, 0, hidden.cols, hidden.rows).contains(at) && hidden.at<std::uint8_t>(at) != 0;
 }
 
-/// Features of every point, unknown where something lies over the line.
+/// Returns the features of every point; unknown where something covers the line.
 Values features_of(const cv::Mat& grey, const InkMap& map, const MarkedLine& line, const cv::Mat& hidden,
                    LineEdge edge) {
   constexpr double kStep = 0.5;
@@ -60,7 +60,7 @@ Values features_of(const cv::Mat& grey, const InkMap& map, const MarkedLine& lin
       width += kStep;
       light += kStep * grey_at(grey, q);
     }
-    // The kerf lies outside, dark and now wide, now narrow: lightness is held against the tissue inside.
+    // The kerf outside is dark and of varying width, so lightness is compared with the tissue inside.
     const double inside = grey_at(grey, p + (from - kBesidePx) * normal);
     const bool is_known = !is_hidden && width > 0.0;
     values[0].push_back(is_known ? width : kUnknown);
@@ -70,7 +70,7 @@ Values features_of(const cv::Mat& grey, const InkMap& map, const MarkedLine& lin
   return values;
 }
 
-/// Means over `reach` points on either side; unknown where too little is seen.
+/// Returns means over `reach` points on either side; unknown where too few are known.
 std::vector<double> averaged(const std::vector<double>& values, std::size_t reach) {
   const std::size_t n = values.size();
   std::vector<double> result(n, kUnknown);
@@ -94,7 +94,7 @@ double median_of(std::vector<double> values) {
   return values.empty() ? kUnknown : median(values);
 }
 
-/// How many times its allowance a feature lies off, at its worst place. @returns 0 where it lies off nowhere
+/// The place where a feature differs most from its median, and by how many times the allowance; ratio 0: none.
 struct Oddest {
   double ratio = 0.0;
   std::size_t at = 0;
@@ -135,7 +135,7 @@ std::optional<OddStretch> odd_stretch_of(const ColorPicture& picture, const InkM
     const Oddest odd = oddest_of(means, kCompared[f].least_share);
     if (odd.ratio <= worst_ratio) continue;
     worst_ratio = odd.ratio;
-    const double border = 0.5 * (odd.value + odd.usual);  // half way back to what is usual
+    const double border = 0.5 * (odd.value + odd.usual);  // half way back to the median
     const auto is_odd = [&](std::size_t i) {
       return !std::isnan(means[i]) && (means[i] < border) == (odd.value < border);
     };

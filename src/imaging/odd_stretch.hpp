@@ -6,9 +6,10 @@
 
 namespace incise::imaging_detail {
 
-/// Where a line looks unlike itself over more than its largest gap: in width, strength of colour, or lightness against
-/// what lies beside it, each averaged over that gap and held against the line's own median and spread.
-/// @param hidden  8 bits, where the line may look otherwise: highlights and the other line; may be empty.
+/// Returns the stretch of a closed line that looks most different from the rest, if any: in width, strength of colour,
+/// or lightness relative to the tissue inside. Each is averaged over the largest allowed gap and compared with the
+/// line's own median and spread.
+/// @param hidden  8 bits, not 0 where highlights or the other line cover this one; may be empty.
 [[nodiscard]] std::optional<OddStretch> odd_stretch_of(const ColorPicture& picture, const InkMap& map,
                                                        const MarkedLine& line, const cv::Mat& hidden,
                                                        const LineSettings& settings);

@@ -7,7 +7,7 @@
 
 namespace incise::imaging_detail {
 
-/// The pixels of a picture, in the order R, G, B, not copied. @pre as encode_png.
+/// Returns a picture's pixels in the order R, G, B, without a copy. @pre as encode_png.
 [[nodiscard]] inline cv::Mat pixels_of(const ColorPicture& picture) {
   // OpenCV has no read-only matrix; nobody writes through this one.
   return {picture.height, picture.width, CV_8UC3, const_cast<std::uint8_t*>(picture.rgb.data())};

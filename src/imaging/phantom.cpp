@@ -20,8 +20,8 @@ constexpr const char* kPhantomStage = "making the phantom";
 constexpr double kScannerAirHu = -1000.0;
 constexpr double kGreatestHu = 3071.0;  // 12 bits from kAirHu
 constexpr double kAirAroundMm = 10.0;   // beside and above the specimen, and below the board
-constexpr double kBoardBeyondMm = 6.0;  // the board is so much larger than the specimen, on each side
-constexpr int kColumns = 5;             // sub-columns along each of i and j in a voxel
+constexpr double kBoardBeyondMm = 6.0;  // margin of the board around the specimen
+constexpr int kColumns = 5;             // sub-columns of a voxel along i, and along j
 constexpr std::size_t kTextureWaves = 8;
 
 Box3 board_of(const Box3& body, const PhantomSettings& settings) {
@@ -29,8 +29,8 @@ Box3 board_of(const Box3& body, const PhantomSettings& settings) {
           Vec3(body.max().x() + kBoardBeyondMm, body.max().y() + kBoardBeyondMm, 0.0)};
 }
 
-// A tight grid, or square slices for a round field of view; shifted by a random part of a voxel, as a specimen lies by
-// chance.
+// Returns a tight grid, or square slices for a round field of view; shifted by a random fraction of a voxel, because a
+// specimen's position in the scanner is random.
 VolumeGrid scan_grid(const Box3& board, const Box3& body, const PhantomSettings& settings, Random& random) {
   Vec3 low = board.min() - Vec3::Constant(kAirAroundMm);
   Vec3 high = board.max() + Vec3::Constant(kAirAroundMm);
@@ -53,7 +53,7 @@ double overlap(double low, double high, double from, double to) {
   return std::max(0.0, std::min(high, to) - std::max(low, from));
 }
 
-// Share of tissue in each voxel: exact along k, kColumns² columns across.
+// Returns the share of tissue in each voxel: exact along k, sampled by kColumns² columns across.
 GrayVolume tissue_share(const TongueShape& shape, const VolumeGrid& grid, Monitor& monitor) {
   GrayVolume share{grid, std::vector<float>(grid.voxel_count(), 0.0F)};
   const Vec3& h = grid.spacing_mm;
@@ -82,7 +82,7 @@ GrayVolume tissue_share(const TongueShape& shape, const VolumeGrid& grid, Monito
   return share;
 }
 
-// Slow changes of HU within muscle: a sum of waves 6 to 20 mm long with the wanted standard deviation.
+// Slow changes of HU within muscle: a sum of waves 6 to 20 mm long with a given standard deviation.
 struct Texture {
   struct Wave {
     Vec3 per_mm;
@@ -110,8 +110,8 @@ Texture draw_texture(double sd_hu, Random& random) {
   return texture;
 }
 
-// HU without blur and noise. Tissue lies above z = 0 and the board below, so their shares of a voxel add up to at
-// most 1.
+// Returns HU without blur and noise. Tissue lies above z = 0 and the board below, so their shares of a voxel add up to
+// at most 1.
 GrayVolume mix(GrayVolume share, const Box3& board, const Texture& texture, const PhantomSettings& settings) {
   const VolumeGrid& grid = share.grid;
   const Vec3 half = 0.5 * grid.spacing_mm;
@@ -131,11 +131,11 @@ GrayVolume mix(GrayVolume share, const Box3& board, const Texture& texture, cons
   return share;
 }
 
-// White noise, averaged a little with its neighbours in the slice as a reconstruction kernel does, of unit standard
-// deviation.
+// Returns noise of unit standard deviation: white noise, averaged slightly with its neighbours in the slice, as by a
+// reconstruction kernel.
 std::vector<float> noise_slice(int nx, int ny, Random& random) {
   constexpr std::array<double, 3> kTaps{0.25, 0.5, 0.25};
-  const double gain = 1.0 / (0.25 * 0.25 + 0.5 * 0.5 + 0.25 * 0.25);  // of the two passes together
+  const double gain = 1.0 / (0.25 * 0.25 + 0.5 * 0.5 + 0.25 * 0.25);  // restores unit deviation after both axes
   const auto wide = static_cast<std::size_t>(nx + 2);
   std::vector<double> white(wide * static_cast<std::size_t>(ny + 2));
   for (double& value : white) value = random.normal();

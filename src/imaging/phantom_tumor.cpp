@@ -16,7 +16,8 @@ Vec3 on_back(const TongueShape& shape, double x_mm, double y_mm) {
   return {x_mm, y_mm, span->high_mm};
 }
 
-// Rings of points from the centre (one point) to the edge: `sides` points each, on the back or on the bowl beneath it.
+// Rings of points from the centre (one point) to the edge, on the back or on the bowl beneath it; each has as many
+// points as the edge.
 constexpr int kRings = 8;
 
 Vec3 bowl_point(const TongueShape& shape, const Vec3& center, const Vec3& edge, double share, double depth_mm) {
@@ -31,7 +32,7 @@ VertexId add_vertex(TriMesh& mesh, const Vec3& p) {
   return VertexId(mesh.vertices.size() - 1);
 }
 
-// One side of the tumour, the edge included in `rim`; `depth_mm` 0 is the back itself. Faces up when `is_up`.
+// Adds one side of the tumour inside `rim`: the back for `depth_mm` 0, otherwise the bowl. Faces up if `is_up`.
 void add_cap(TriMesh& mesh, const TongueShape& shape, const Vec3& center, const std::vector<VertexId>& rim,
              double depth_mm, bool is_up) {
   const std::size_t sides = rim.size();

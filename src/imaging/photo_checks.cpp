@@ -11,8 +11,8 @@
 namespace incise::imaging_detail {
 namespace {
 
-constexpr int kBesidePx = 12;          // beside a line its own blur and JPEG's blocks end
-constexpr int kLeastPlacePixels = 12;  // smaller ones are grain
+constexpr int kBesidePx = 12;          // reach of a line's own blur and of JPEG's blocks
+constexpr int kLeastPlacePixels = 12;  // smaller places are noise
 
 std::vector<cv::Point> pixels_along(const std::vector<Vec2>& line) {
   std::vector<cv::Point> points;
@@ -21,8 +21,8 @@ std::vector<cv::Point> pixels_along(const std::vector<Vec2>& line) {
   return points;
 }
 
-/// Paints over the ink that belongs to the line itself. A band lies on the outer side of its inner border only: what
-/// is red on the other side, farther than blur reaches, is something else.
+/// Erases the ink of the line itself. A band lies only on the outer side of its inner border: ink on the inner side,
+/// beyond the reach of blur, is something else.
 void wipe_own_ink(cv::Mat& ink, const CheckedLine& checked, const cv::Point& corner) {
   const std::vector<Vec2>& line = checked.line.points_px;
   std::vector<cv::Point> points = pixels_along(line);
@@ -53,7 +53,7 @@ void wipe_own_ink(cv::Mat& ink, const CheckedLine& checked, const cv::Point& cor
   fill(line[n - 1], out(n - 1), behind, out(n - 1));
 }
 
-/// The picture's part that a mask fills, with a rim of one pixel, and the line in its coordinates.
+/// The part of the picture that a mask fills, with a rim of one pixel, and the line in its coordinates.
 struct Crop {
   cv::Mat mask;
   cv::Point corner;
@@ -77,7 +77,7 @@ cv::Mat drawn(const cv::Size& size, const std::vector<cv::Point>& line, bool is_
   return result;
 }
 
-/// The pieces of ink that the line runs through or that a gap at most parts from it.
+/// Returns the pieces of ink through which the line runs, or that are at most a gap away from it.
 cv::Mat ink_of_line(const CheckedLine& checked, const Crop& crop) {
   const double reach = checked.line.width_px + 2.0 * checked.max_gap_mm / checked.mm_per_pixel;
   const cv::Mat near = drawn(crop.mask.size(), crop.line, checked.line.is_closed, reach);
@@ -104,14 +104,14 @@ cv::Mat ink_of_line(const CheckedLine& checked, const Crop& crop) {
 /// A place that ink encloses.
 struct Enclosed {
   double pixels = 0.0;
-  double inside_ring = 0.0;  ///< of its pixels; an open line counts as closed by its chord
-  double off_line = 0.0;     ///< of its pixels: farther from the line than its own ink lies
+  double inside_ring = 0.0;  ///< its pixels inside the ring; an open line is closed by its chord
+  double off_line = 0.0;     ///< its pixels that are farther from the line than the line's own ink
   Vec2 middle_px = Vec2::Zero();
-  cv::Mat shape;  ///< of the ring's own inside alone, in the crop: 255 there and on what lies in it
+  cv::Mat shape;  ///< set only if is_own_inside; in the crop: 255 on this place and everything inside it
   bool is_own_inside = false;
 };
 
-/// A place without the holes that other ink makes in it.
+/// Returns a place with the holes filled that other ink makes in it.
 cv::Mat filled(const cv::Mat& place) {
   std::vector<std::vector<cv::Point>> borders;
   cv::findContours(place, borders, cv::RETR_EXTERNAL, cv::CHAIN_APPROX_NONE);
@@ -122,7 +122,7 @@ cv::Mat filled(const cv::Mat& place) {
 
 std::vector<Enclosed> enclosed_places(const CheckedLine& checked, const Crop& crop) {
   const cv::Mat own = ink_of_line(checked, crop);
-  // From the centre line the ink lies half a width to either side, from a band's inner border a whole one.
+  // Ink reaches half a width to either side of a centre line, and a whole width from a band's inner border.
   const bool is_band = checked.edge == LineEdge::Inner;
   const double to_side = (is_band ? 1.1 : 0.5) * checked.line.width_px + (is_band ? 4.0 : 2.0);
   const cv::Mat on_line = drawn(own.size(), crop.line, checked.line.is_closed, 2.0 * to_side);
@@ -149,7 +149,7 @@ std::vector<Enclosed> enclosed_places(const CheckedLine& checked, const Crop& cr
   const auto outside = static_cast<std::size_t>(places.at<int>(0, 0));
   result[outside] = {};
   result[0] = {};  // the ink
-  // With gaps in the ring's ink its inside is part of the outside, and no place at all.
+  // If the ring's ink has gaps, its inside is connected to the outside, and is no enclosed place.
   const auto own_inside = std::max_element(
       result.begin(), result.end(), [](const Enclosed& a, const Enclosed& b) { return a.inside_ring < b.inside_ring; });
   const double least = checked.line.is_closed ? 0.0 : 0.5 * cv::countNonZero(ring);
@@ -160,7 +160,8 @@ std::vector<Enclosed> enclosed_places(const CheckedLine& checked, const Crop& cr
   return result;
 }
 
-/// Ink encloses the ring, but its border was lost on the way: mostly because something else of that colour is in it.
+/// Refuses a ring that ink encloses but whose border was not found, usually because of another mark of that colour
+/// inside it.
 [[noreturn]] void refuse_unclear_ring(const CheckedLine& checked, const Crop& crop, const Enclosed& inside) {
   cv::Mat other, labels, stats, middles;
   cv::bitwise_and(crop.mask, inside.shape, other);

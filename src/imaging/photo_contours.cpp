@@ -16,8 +16,8 @@ namespace {
 using imaging_detail::CheckedLine;
 using imaging_detail::InkMap;
 
-constexpr double kLargestBloodMm = 3.0;    // red in the tumour that neither blood nor the picture's grain leaves
-constexpr double kGreenerThanGrey = 0.08;  // strength: rims of paper, cloth and char are grey beside red tissue
+constexpr double kLargestBloodMm = 3.0;    // a longer red mark in the tumour is neither blood nor noise
+constexpr double kGreenerThanGrey = 0.08;  // strength of true green: rims of paper, cloth and char are grey
 constexpr double kRimOfCoverPx = 4.0;      // a line's blur hides a little more than its mask
 
 Contour in_plane(const MarkedLine& line, const PhotoScale& scale) {
@@ -46,7 +46,7 @@ void require_size(const Contour& edge, const std::filesystem::path& name) {
 
 void require_closed(const MarkedLine& green, const std::filesystem::path& name) {
   if (!green.is_closed) {
-    // The widest gap that is not hidden is the first of them.
+    // Gaps are sorted: the first that is not hidden is the widest.
     const auto widest =
         std::find_if(green.gaps.begin(), green.gaps.end(), [](const LineGap& g) { return !g.is_hidden; });
     const bool is_glare = widest != green.gaps.end() && widest->is_glare;
@@ -79,7 +79,7 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
   imaging_detail::hold_opencv_threads();
   PhotoContours result;
   const imaging_detail::InkStrengths strengths = imaging_detail::ink_strengths(picture);
-  // The line's scale is that of the picture's middle; with perspective, gaps elsewhere are judged a little off.
+  // Scale at the middle of the picture; with perspective, lengths of gaps elsewhere are slightly wrong.
   result.mm_per_pixel = scale.mm_per_pixel({0.5 * picture.width, 0.5 * picture.height});
   const InkMap green = imaging_detail::ink_map(strengths, InkColor::Green, result.mm_per_pixel);
   const InkMap red = imaging_detail::ink_map(strengths, InkColor::Red, result.mm_per_pixel);
@@ -93,7 +93,7 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
                          line.max_gap_mm, name};
   imaging_detail::require_in_view(edge);
   result.tumor_edge = in_plane(result.green, scale);
-  require_size(result.tumor_edge, name);  // comes first: where the scale is wrong, so is the length of a gap
+  require_size(result.tumor_edge, name);  // first, because a wrong scale also makes gaps wrong
   imaging_detail::require_simple(edge);
   imaging_detail::require_nothing_else(edge);
   require_closed(result.green, name);

@@ -12,21 +12,21 @@
 namespace incise {
 namespace {
 
-constexpr double kStandardErrors = 4.0;  // one sound figure in 16 000 lies farther out
+constexpr double kStandardErrors = 4.0;  // one sound figure in 16 000 is farther out
 
-/// One figure of a ruler as a share of the scale, and what it means.
+/// One figure of a ruler, as a share of the scale, with its text.
 struct Finding {
   RulerFigure share;
   std::string text;
 };
 
-/// An angle of a, radians, between ticks, or of them from their row's normal, comes with twice as large a change of
-/// scale along a ruler that lies the other way.
+/// Converts an angle between ticks, or from the normal of their row, to a change of scale: an angle of a radians
+/// implies a change of 2 a along a ruler that lies across this one.
 RulerFigure share_of_angle(const RulerFigure& degrees) {
   return {2.0 * units::rad_from_deg(degrees.value), 2.0 * units::rad_from_deg(degrees.error)};
 }
 
-/// Adds the worst of the findings that cannot be chance.
+/// Adds the worst finding that exceeds its limit and is not chance.
 template <std::size_t N>
 void add_worst(const std::array<Finding, N>& findings, const char* id, const char* meaning, Verdict& verdict) {
   const double limit = *verdict_rule(id).limit;

@@ -14,7 +14,7 @@ namespace {
 using imaging_detail::Stroke;
 using imaging_detail::pixels_of;
 
-/// Place, along a line, where grey passes half-way between inside and outside; nullopt without a step.
+/// Returns the distance from `inside` at which grey passes half-way to the outside; nullopt if there is no step.
 std::optional<double> end_of_bar(const cv::Mat& grey, const Vec2& inside, const Vec2& direction, double expected) {
   const auto value = [&](double s) { return imaging_detail::grey_at(grey, inside + s * direction); };
   double in = 0.0, out = 0.0;
@@ -31,7 +31,7 @@ std::optional<double> end_of_bar(const cv::Mat& grey, const Vec2& inside, const 
   return std::nullopt;
 }
 
-/// Every solid straight bar without colour, black or white, longest first.
+/// Returns every solid, straight, black or white bar, longest first.
 std::vector<Stroke> bars_in(const ColorPicture& picture, const cv::Mat& grey) {
   constexpr double kFill = 0.85;
   constexpr double kAspect = 4.0;
@@ -56,8 +56,8 @@ std::vector<Stroke> bars_in(const ColorPicture& picture, const cv::Mat& grey) {
   return bars;
 }
 
-/// An instrument's shaft, a label or the next piece of a chequered bar passes for a bar, too: which one has the length
-/// that was given is not known.
+/// Refuses a second bar. An instrument's shaft, a label or the next piece of a chequered bar also looks like a bar;
+/// which one has the given length is unknown.
 void require_one_bar(const std::vector<Stroke>& bars, const std::filesystem::path& name) {
   constexpr double kOfLongest = 0.25;  // strokes of a label's letters are shorter
   if (bars.size() < 2 || bars[1].length < kOfLongest * bars[0].length) return;
@@ -78,10 +78,10 @@ Ruler ruler_of_bar(const ColorPicture& picture, double length_mm, const std::fil
                     "Give the scale with --mm-per-pixel or two points of known distance instead.");
   };
   if (bars.empty()) refuse();
-  imaging_detail::require_no_ticks(picture, name);  // first: ticks are bars, too
+  imaging_detail::require_no_ticks(picture, name);  // first, because ticks are bars too
   require_one_bar(bars, name);
   const Stroke* best = bars.data();
-  // Ends on several lines along the bar, so that one blemish does not count.
+  // Measure along several lines, to ignore a blemish.
   const Vec2 across(-best->direction.y(), best->direction.x());
   std::vector<double> lengths;
   for (const double share : {-0.25, -0.125, 0.0, 0.125, 0.25}) {

@@ -13,8 +13,8 @@ namespace {
 /// A polynomial c0 + c1 u + c2 u² + … fitted through values at u in [-1, 1].
 struct Fit {
   Eigen::VectorXd c;
-  Eigen::VectorXd error;   ///< standard error of each
-  double deviation = 0.0;  ///< of the values from it
+  Eigen::VectorXd error;   ///< standard error of each coefficient
+  double deviation = 0.0;  ///< standard deviation of the residuals
 };
 
 Fit fit_polynomial(const Eigen::VectorXd& u, const Eigen::VectorXd& values, int degree) {
@@ -30,8 +30,8 @@ Fit fit_polynomial(const Eigen::VectorXd& u, const Eigen::VectorXd& values, int 
   return fit;
 }
 
-/// The ticks' places along and across their row. Longer ticks among shorter ones put the middles out of line, but not
-/// the ends at the ruler's edge.
+/// Fits to the ticks' positions along and across their row. If some ticks are longer, their middles are out of line,
+/// but not their ends at the ruler's edge.
 struct Row {
   Fit along;
   Fit across;
@@ -79,8 +79,8 @@ RulerShape shape_of(const Comb& comb) {
   }
   const double length = 2.0 * std::abs(row.along.c(1));
   const Fit angles = fit_polynomial(u, angle_deg, 1);
-  // A straight line through the row tells its direction better than the parabola's slope in the middle: they are the
-  // same.
+  // The parabola's slope in the middle gives the row's direction: if no tick is missing, it is that of a straight-line
+  // fit.
   const double slope = row.across.c(1) / row.along.c(1);
   const double slope_error = row.across.error(1) / std::abs(row.along.c(1));
   RulerShape shape;

@@ -17,13 +17,13 @@ namespace incise::imaging_detail {
 namespace {
 
 constexpr std::size_t kLeastTicks = 8;
-constexpr std::size_t kLeastOtherTicks = 6;  // of a second scale, which has to be evener than the first
+constexpr std::size_t kLeastOtherTicks = 6;  // of a second scale, which must be more even than the first
 constexpr double kOtherEvenness = 0.04;
-constexpr double kEvenness = 0.12;     // a tick may lie off its place by this share of the spacing
-constexpr double kSameSpacing = 0.03;  // two rows of one unit, on both edges of a ruler or on two rulers
-constexpr double kLongestJump = 6.0;   // spacings without a tick: behind them another ruler may begin
-constexpr std::size_t kOffPlace = 3;   // strokes between the ticks that a scratch or a letter does not explain
-constexpr std::size_t kCoarseRun = 3;  // steps of one whole number of spacings in a row
+constexpr double kEvenness = 0.12;     // greatest deviation of a tick from its place, relative to the spacing
+constexpr double kSameSpacing = 0.03;  // of two rows of one unit, on both edges of a ruler or on two rulers
+constexpr double kLongestJump = 6.0;   // spacings without a tick; after more, another ruler may begin
+constexpr std::size_t kOffPlace = 3;   // strokes between ticks; scratches or letters cause fewer
+constexpr std::size_t kCoarseRun = 3;  // consecutive steps of the same multiple of the spacing
 const char* const kTwoScalesHint =
     "Cover the other scale, or give the scale with two ticks of known distance: --two-points.";
 
@@ -32,7 +32,7 @@ struct Place {
   std::size_t stroke;
 };
 
-/// Strokes that are parallel to the seed and stand side by side with it, in order.
+/// Returns, in order, the unused strokes that are parallel to the seed and side by side with it.
 std::vector<Place> row_about(const Stroke& seed, const std::vector<Stroke>& strokes, const std::vector<bool>& is_used) {
   constexpr double kParallel = 0.9976;  // cosine of 4 degrees
   const Vec2 across(-seed.direction.y(), seed.direction.x());
@@ -55,15 +55,15 @@ double median_step(const std::vector<Place>& places) {
   return median(steps);
 }
 
-/// A row of ticks, and what in it argues against one spacing.
+/// A row of ticks, and evidence of a second spacing in it.
 struct CountedRow {
   Comb comb;
   std::size_t off_place = 0;   ///< strokes between two ticks
   std::size_t coarse_run = 0;  ///< longest run of equal steps of more than one spacing
 };
 
-/// Numbers the ticks from neighbour to neighbour, so that neither an error of the first guess nor a slow change of the
-/// spacing (perspective) adds up.
+/// Numbers the ticks from neighbour to neighbour: errors of the first guess of the spacing, or a slow change of it
+/// (perspective), do not add up.
 CountedRow counted(const std::vector<Place>& places, const std::vector<Stroke>& strokes, double spacing) {
   constexpr double kOldShare = 0.8;
   CountedRow row;
@@ -77,7 +77,7 @@ CountedRow counted(const std::vector<Place>& places, const std::vector<Stroke>& 
     const double whole = std::round(step);
     if (whole > kLongestJump) break;
     if (whole < 1.0 || std::abs(step - whole) > kEvenness * whole) {
-      // What touches a tick is its own rim or a letter's; what lies between two may be a finer scale.
+      // A stroke that touches a tick is a rim, of the tick or of a letter; one between two ticks may be a finer scale.
       if (step > 0.25) ++off_since;
       continue;
     }
@@ -94,7 +94,7 @@ CountedRow counted(const std::vector<Place>& places, const std::vector<Stroke>& 
   return row;
 }
 
-/// Spacing by least squares over all ticks. False: they are not even.
+/// Fits the spacing by least squares over all ticks. Returns false if they are not even.
 bool fit_spacing(Comb& comb, const Vec2& across, double evenness) {
   const auto n = static_cast<double>(comb.ticks.size());
   double mean_k = 0.0, kk = 0.0, rest = 0.0;
@@ -117,7 +117,7 @@ bool fit_spacing(Comb& comb, const Vec2& across, double evenness) {
   return deviation <= evenness * comb.spacing_px;
 }
 
-/// The longest even row among the strokes that are not used yet.
+/// Returns the longest even row among the unused strokes.
 std::optional<CountedRow> longest_row(const std::vector<Stroke>& strokes, const std::vector<bool>& is_used,
                                       std::size_t least_ticks, double evenness) {
   constexpr double kLeastSpacingPx = 3.0;
@@ -136,7 +136,7 @@ std::optional<CountedRow> longest_row(const std::vector<Stroke>& strokes, const 
   return best;
 }
 
-/// Every row of ticks in a picture, the longest first.
+/// Returns every row of ticks in a picture (at most 6), longest first.
 std::vector<CountedRow> rows_in(const ColorPicture& picture, int window) {
   constexpr std::size_t kMostRows = 6;
   const DarkPixels dark = dark_pixels(picture, window);
@@ -153,7 +153,7 @@ std::vector<CountedRow> rows_in(const ColorPicture& picture, int window) {
   return rows;
 }
 
-/// Spacing and stroke width are not known beforehand: narrow and wide surroundings.
+/// Sizes of the surroundings, pixels: narrow and wide, because spacing and width of strokes are unknown beforehand.
 constexpr std::array<int, 2> kWindows{31, 81};
 
 std::string text_of(const Comb& comb) {
@@ -161,7 +161,7 @@ std::string text_of(const Comb& comb) {
   return fmt::format("{} of {:.2f} pixels at pixel {:.0f}, {:.0f}", comb.ticks.size(), comb.spacing_px, at.x(), at.y());
 }
 
-/// `--ruler-mm` is the distance of the finest ticks; where two spacings are in view, nobody knows which were meant.
+/// Refuses two spacings: `--ruler-mm` is the distance between the finest ticks, and which ones are meant is unknown.
 void require_one_spacing(const std::vector<CountedRow>& rows, const std::filesystem::path& name) {
   const CountedRow& first = rows.front();
   if (first.off_place >= kOffPlace || first.coarse_run >= kCoarseRun) {
@@ -181,7 +181,7 @@ void require_one_spacing(const std::vector<CountedRow>& rows, const std::filesys
   }
 }
 
-/// Ticks that are too faint or too short to be strokes would make the scale that of the coarser ones.
+/// Refuses finer ticks that are too faint or too short to be strokes: the scale would be that of the coarser ticks.
 void require_no_finer_ticks(const ColorPicture& picture, const Comb& comb, const std::filesystem::path& name) {
   cv::Mat grey;
   cv::cvtColor(pixels_of(picture), grey, cv::COLOR_RGB2GRAY);

@@ -10,25 +10,26 @@
 
 namespace incise::imaging_detail {
 
-/// Ticks of one ruler, in order, numbered by their place: evenly spaced, some may be missing.
+/// The ticks of one ruler, in order: evenly spaced, some may be missing.
 struct Comb {
   std::vector<Stroke> ticks;
-  std::vector<double> numbers;
-  std::vector<std::size_t> used;  ///< of the strokes looked through
+  std::vector<double> numbers;    ///< whole positions of the ticks, in spacings from the first
+  std::vector<std::size_t> used;  ///< indices of the ticks in the list of strokes
   double spacing_px = 0.0;        ///< along the row
   double error_px = 0.0;          ///< standard error of the spacing
 };
 
-/// The shape of a comb's row, from cubics fitted through the ticks' ends or middles, whichever lie in line.
-/// @pre 8 ticks or more
+/// Returns the shape of a comb's row, from polynomials fitted through the ticks' ends or middles, whichever lie in
+/// line.
+/// @pre at least 8 ticks
 [[nodiscard]] RulerShape shape_of(const Comb& comb);
 
-/// @throws DataError where no ticks are found, ticks of two spacings, or marks between them; without a length also
-/// where every second is longer.
+/// Finds a ruler by its ticks; see find_ruler. @throws DataError if there are no ticks, ticks of two spacings, or marks
+/// between them; without a length, also if every second tick is longer.
 [[nodiscard]] Ruler ruler_of_ticks(const ColorPicture& picture, std::optional<double> length_mm,
                                    const std::filesystem::path& name);
 
-/// Refuses a picture with a ruler's ticks in view, for one whose scale is a bar. @throws DataError
+/// Refuses a picture that shows a ruler's ticks; for a scale that is a bar. @throws DataError
 void require_no_ticks(const ColorPicture& picture, const std::filesystem::path& name);
 
 }  // namespace incise::imaging_detail

@@ -16,10 +16,10 @@ constexpr int kLowestAir = -1500;
 constexpr int kHighestAir = -400;
 constexpr int kBinHu = 10;
 constexpr double kLeastAirShare = 0.002;
-constexpr std::size_t kMostPixels = 10000;   // of a slice that are looked at
-constexpr std::size_t kLeastPixels = 50;     // fewer say nothing
+constexpr std::size_t kMostPixels = 10000;   // of a slice; at most twice as many are compared
+constexpr std::size_t kLeastPixels = 50;     // too few to compare below this
 
-/// The middle of the fullest bin of air, and how many voxels there are in all bins.
+/// The middle of the fullest bin of air, and the number of voxels in all bins.
 struct AirCount {
   double peak_hu = 0.0;
   std::size_t voxels = 0;
@@ -38,7 +38,7 @@ AirCount count_air(const CtVolume& ct, bool with_padding) {
   return air;
 }
 
-/// Median over pixels of a slice less another; 0 where hardly a pixel can be compared.
+/// Returns the median over pixels of one slice minus another; 0 if too few pixels can be compared.
 double step_between(const CtVolume& ct, int slice, int other) {
   const std::size_t pixels = static_cast<std::size_t>(ct.grid.size[0]) * static_cast<std::size_t>(ct.grid.size[1]);
   const std::size_t stride = std::max<std::size_t>(1, pixels / kMostPixels);
@@ -51,7 +51,8 @@ double step_between(const CtVolume& ct, int slice, int other) {
   return steps.size() < kLeastPixels ? 0.0 : median(steps);
 }
 
-/// A slice with values of its own lies to the same side of both its neighbours; the border of a board lies between them.
+/// Returns the smaller of a slice's two differences from its neighbours if both have the same sign, else 0: a slice
+/// with its own intercept deviates from both in the same direction, one at the border of a board lies between them.
 double step_of(const CtVolume& ct, int slice) {
   const double below = step_between(ct, slice, slice - 1);
   const double above = step_between(ct, slice, slice + 1);

@@ -19,10 +19,10 @@ namespace incise {
 namespace {
 
 constexpr const char* kStage = "segmenting";
-// Of the volume that is kept: a lesser piece is a crumb, the table or a clamp.
+// Of the chosen piece's volume: a smaller piece is a crumb, the table or a clamp.
 constexpr double kLeastRivalShare = 0.25;
-constexpr double kCarriedLengths = 4.0;  // of smoothing, within which a cut face is looked for where it was moved to
-constexpr int kGrowth = 3;  // voxels by which the occupancy can reach beyond the body that it is made from
+constexpr double kCarriedLengths = 4.0;  // smoothing lengths within which a moved cut face is searched for
+constexpr int kGrowth = 3;  // voxels by which the occupancy can extend beyond its body
 
 void require_sound_volume(const CtVolume& ct) {
   const VolumeGrid& grid = ct.grid;
@@ -37,7 +37,7 @@ void require_sound_volume(const CtVolume& ct) {
   INCISE_REQUIRE((grid.direction.transpose() * grid.direction).isIdentity(1e-3), "expected orthonormal axes");
 }
 
-// Voxels of a mask that a ball around them keeps inside the mask.
+// Returns the voxels of a mask around which a ball stays inside the mask.
 Mask erode(const Mask& mask, double radius_mm, Workers& workers) {
   if (radius_mm == 0.0) return mask;
   const GrayVolume depth = distance_to(complement(mask), workers);
@@ -46,8 +46,7 @@ Mask erode(const Mask& mask, double radius_mm, Workers& workers) {
   return core;
 }
 
-// The balls around the voxels of an eroded set: they fill the opened set and, by its definition, stay inside the
-// original.
+// Returns the balls around the voxels of an eroded set: the opened set, which by definition stays inside the original.
 Mask grow_back(Mask core, double radius_mm, Workers& workers) {
   if (radius_mm == 0.0) return core;
   const GrayVolume distance = distance_to(core, workers);
@@ -68,7 +67,7 @@ std::int32_t largest(const Pieces& pieces) {
   return static_cast<std::int32_t>(std::max_element(sizes.begin() + 1, sizes.end()) - sizes.begin());
 }
 
-// The piece whose ball of the opening's radius covers the voxel, the nearest if there are several; 0: none.
+// Returns the number of the nearest piece within the opening's radius of the voxel; 0: none.
 std::int32_t piece_at(const Pieces& pieces, std::size_t offset, double radius_mm) {
   const VolumeGrid& grid = pieces.number.grid;
   const std::array<int, 3> at = grid.voxel_at(offset);
@@ -106,7 +105,7 @@ std::int32_t choose_piece(const Pieces& pieces, const std::vector<std::size_t>& 
   return chosen;
 }
 
-/// The largest piece but one; 0: there is one alone.
+/// Returns the number of the largest piece other than `first`; 0 if there is no other.
 std::int32_t second_largest(const Pieces& pieces, std::int32_t first) {
   std::vector<std::size_t> sizes(static_cast<std::size_t>(pieces.count) + 1, 0);
   for (const std::int32_t number : pieces.number.voxels) ++sizes[static_cast<std::size_t>(number)];
@@ -127,7 +126,8 @@ Vec3 middle_of(const Mask& mask) {
   return mask.grid.world_from_index(index);
 }
 
-/// Which of two bodies is the specimen cannot be seen from their sizes where these are alike.
+/// Adds a caution if another piece is at least kLeastRivalShare as large: size then does not show which one is the
+/// specimen.
 void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, const SegmentationSettings& settings,
                 Workers& workers, Segmentation& result) {
   const std::int32_t second = second_largest(pieces, chosen);
@@ -159,7 +159,7 @@ Mask find_body(const WorkingVolume& work, const std::vector<std::size_t>& seeds,
   return body;
 }
 
-// Background without a way to the grid's first voxel, which the margin keeps outside the body, becomes body.
+// Returns the background voxels without a way to the grid's first voxel, which the margin keeps outside the body.
 std::vector<std::size_t> cavities(const Mask& body, std::size_t& count) {
   const Pieces outside = find_pieces(complement(body));
   std::vector<std::size_t> voxels;
@@ -175,8 +175,8 @@ void fill_holes(Mask& body, Segmentation& result) {
   result.hole_voxels = voxels.size();
 }
 
-// Convolution with 2 G - G * G: it averages noise as a Gaussian G does, but shrinks what is round less than half as
-// much. It can overshoot beside a sharp step, hence the limits.
+// Convolves with 2 G - G * G: it averages noise as a Gaussian G does, but shrinks round bodies less than half as much.
+// It can overshoot beside a sharp step, hence the limits.
 GrayVolume smoothed(const GrayVolume& occupancy, double sigma_mm, Workers& workers) {
   GrayVolume once = gaussian(occupancy, sigma_mm, workers);
   const GrayVolume twice = gaussian(once, sigma_mm, workers);
@@ -198,7 +198,7 @@ Mask at_least_half(const GrayVolume& occupancy) {
                   "About a voxel's longest side that the body spans is enough; 0: none.");
 }
 
-// Leaves one piece without cavities above 0.5: crumbs beside the body go, pinholes in it close.
+// Reduces the occupancy to one piece above 0.5: removes crumbs beside the body and, if asked, closes cavities in it.
 Mask make_one_piece(GrayVolume& occupancy, bool close_holes, double smoothing_mm) {
   const Mask all = at_least_half(occupancy);
   const Pieces pieces = find_pieces(all);
@@ -232,7 +232,7 @@ IndexBox grown(IndexBox box, int voxels) {
   return box;
 }
 
-/// Counts the voxels that are cut, by the faces that cut them. @param grid  of the voxels
+/// Counts the cut voxels by face, and adds a caution if there are any. @param grid  grid of the voxels
 void note_cut_faces(const VolumeGrid& grid, Segmentation& result) {
   for (const MadeVoxel& voxel : result.cut) ++result.cut_voxels.at(static_cast<std::size_t>(face_of(grid, voxel.side)));
   if (result.cut_faces() == 0) return;
@@ -247,7 +247,8 @@ void note_cut_faces(const VolumeGrid& grid, Segmentation& result) {
                   faces.size(), fmt::join(faces, ", ")));
 }
 
-/// Smoothing shrinks what is curved as strongly as its length: a body of a few millimetres loses a part that counts.
+/// Adds a caution if smoothing changed the volume too much: a body of a few millimetres, where the smoothing length is
+/// comparable to the radius of curvature, loses a noticeable part.
 void note_lost_volume(double sharp_mm3, Segmentation& result) {
   constexpr double kMostShare = 0.02;
   const double share = std::abs(result.occupancy_volume_mm3 - sharp_mm3) / std::max(result.occupancy_volume_mm3, sharp_mm3);
@@ -341,7 +342,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   };
 
   report(0.0);
-  // The final box is the body's box plus the margin, and the body may grow a little: the pad has room for both.
+  // The pad has room for the final margin and for a slight growth of the body.
   const int pad = settings.margin_voxels + kGrowth;
   const WorkingVolume whole = cut_out(ct, settings, pad, source == Source::Scan ? kAirHu : std::int16_t{0}, monitor);
   const std::vector<std::size_t> seeds = locate_seeds(ct, whole, settings);
@@ -378,7 +379,7 @@ Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSetti
   return result;
 }
 
-/// 1 where the label is one of the tissue's.
+/// Returns 1 where the label is tissue, 0 elsewhere.
 LabelVolume tissue_of(const LabelVolume& labels, const SegmentationSettings& settings) {
   const std::array<bool, 256> is_tissue = tissue_labels(settings);
   LabelVolume tissue{labels.grid, std::vector<std::uint8_t>(labels.voxels.size())};
@@ -387,7 +388,7 @@ LabelVolume tissue_of(const LabelVolume& labels, const SegmentationSettings& set
   return tissue;
 }
 
-/// @throws CaseError where the region, or a seed, has no label.
+/// @throws CaseError if the region contains no label, or a seed lies where the label is 0.
 void require_labels(const LabelVolume& labels, const SegmentationSettings& settings) {
   const VolumeGrid& grid = labels.grid;
   bool is_labelled = false;

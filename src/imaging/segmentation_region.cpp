@@ -21,7 +21,7 @@ std::string text_of(const Box3& box) {
   return fmt::format("[{}, {}]", text_of(box.min()), text_of(box.max()));
 }
 
-// The volume's voxel centres, as a box in world coordinates (larger than the volume when its axes are oblique).
+// Returns the box of the volume's voxel centres in world coordinates (larger than the volume if its axes are oblique).
 Box3 extent_of(const VolumeGrid& grid) {
   Box3 box;
   for (int corner = 0; corner < 8; ++corner)
@@ -31,7 +31,7 @@ Box3 extent_of(const VolumeGrid& grid) {
   return box;
 }
 
-// Indices of the voxels whose centres can lie in the box.
+// Returns the indices of the voxels whose centres can lie in the box.
 IndexBox index_box(const VolumeGrid& grid, const std::optional<Box3>& roi_mm) {
   IndexBox box{{0, 0, 0}, grid.size};
   if (!roi_mm) return box;
@@ -84,8 +84,8 @@ void fill_working_volume(const CtVolume& ct, const SegmentationSettings& setting
       }
 }
 
-/// A painted voxel gets a value that tissue may have; one that is taken away keeps its own, as one beyond the region's
-/// border does. @param piece  of the stroke's path: one point, or two.
+/// Applies one piece of a stroke. An added voxel outside the window gets the window's middle value; a removed voxel
+/// keeps its own, as does one beyond the region. @param piece  of the stroke's path: one or two points.
 void paint(const Contour& piece, const TissueEdit& edit, const SegmentationSettings& settings, WorkingVolume& work) {
   const VolumeGrid& grid = work.hu.grid;
   const double middle_hu = 0.5 * (settings.window_low_hu + settings.window_high_hu);
@@ -222,10 +222,10 @@ int voxels_within(double length_mm, const VolumeGrid& grid, std::int32_t side) {
   return static_cast<int>(std::ceil(length_mm / grid.spacing_mm[side / 2]));
 }
 
-/// Whether tissue goes on in the layer whose middle is `beyond`, across the axis of `side`.
+/// Returns whether tissue continues in the 3 x 3 voxels round `beyond`, across the axis of `side`.
 bool goes_on(const WorkingVolume& work, const VolumeGrid& scan, const Place& first, const Place& beyond,
              std::int32_t side) {
-  constexpr int kLeast = 4;  // of 9: noise has fewer, the rim of a cut more
+  constexpr int kLeast = 4;  // of 9: noise gives fewer, the rim of a cut more
   const auto one = static_cast<std::size_t>((side / 2 + 1) % 3), other = static_cast<std::size_t>((side / 2 + 2) % 3);
   int count = 0;
   for (int a = -1; a <= 1; ++a)
@@ -239,8 +239,8 @@ bool goes_on(const WorkingVolume& work, const VolumeGrid& scan, const Place& fir
   return count >= kLeast;
 }
 
-/// The body's voxels that tissue in the region joins, straight on, to a voxel whose side was made.
-/// @param is_made  (voxel, the one beyond its side, side)
+/// Returns the body's voxels that lie straight inwards from an artificial side, with only tissue between.
+/// @param is_made  (voxel, the voxel beyond its side, side) -> whether this side is artificial
 template <class IsMade>
 std::vector<MadeVoxel> find_made(const Mask& body, const WorkingVolume& work, double opening_mm,
                                  const IsMade& is_made) {

@@ -11,26 +11,27 @@ namespace incise::imaging_detail {
 
 /// A straight, slim dark piece of the picture.
 struct Stroke {
-  Vec2 center;     ///< weighted by darkness
-  Vec2 direction;  ///< along it
-  double length;
-  double width;
-  double fill;  ///< share of its rectangle that it covers
+  Vec2 center;     ///< pixels; weighted by darkness
+  Vec2 direction;  ///< unit vector along it
+  double length;   ///< pixels
+  double width;    ///< pixels
+  double fill;     ///< area over length x width
 };
 
-/// Pixels that are dark against their surroundings and without colour, with their darkness, [0, 255].
+/// Colourless pixels that are darker than their surroundings.
 struct DarkPixels {
-  cv::Mat mask;
-  cv::Mat darkness;
+  cv::Mat mask;      ///< 8 bits, 255 = dark
+  cv::Mat darkness;  ///< 8 bits, grey levels below the mean of the surroundings
 };
-/// @param window  side of the surroundings, pixels
+/// Finds dark pixels. @param window  side of the surroundings, pixels
 [[nodiscard]] DarkPixels dark_pixels(const ColorPicture& picture, int window);
 
-/// Connected pieces of a mask that are `least_aspect` times as long as wide. @param darkness  weighs their pixels.
+/// Returns the connected pieces of a mask that are at least `least_aspect` times as long as wide.
+/// @param darkness  weights of the pixels, 8 bits.
 [[nodiscard]] std::vector<Stroke> strokes_in(const cv::Mat& mask, const cv::Mat& darkness, double least_aspect);
 
-/// Grey value between pixels, in proportion; beyond the rim the rim's own pixels go on. @pre 8 bits, 2 x 2 pixels or
-/// more
+/// Returns the grey value between pixels, bilinear; the rim's values continue beyond it. @pre 8 bits, at least 2 x 2
+/// pixels
 [[nodiscard]] double grey_at(const cv::Mat& grey, const Vec2& pixel);
 
 }  // namespace incise::imaging_detail

@@ -12,18 +12,18 @@ namespace incise {
 namespace {
 
 constexpr double kTipThicknessMm = 4.0;  // the blunt part of the tip, above its waist
-constexpr double kTipRound = 0.12;       // share of the length over which the tip rounds off
-constexpr double kSoleTaper = 0.25;      // share of the length over which the underside comes down to the platform
-constexpr double kSolePressMm = 2.0;     // how far the unflattened underside would reach below the platform
+constexpr double kTipRound = 0.12;       // share of the length over which the tip is rounded
+constexpr double kSoleTaper = 0.25;      // share of the length over which the underside descends to the platform
+constexpr double kSolePressMm = 2.0;     // depth of the unflattened underside below the platform
 constexpr double kSoleEdgeMm = 1.5;      // half width, in z, of the rounded edge of the flat underside
 constexpr double kRootStart = 0.8;       // s where the root begins to round off
 
-// 0 at v = 0, where it rises as the root of v; 1 with two vanishing derivatives from v = 1 on.
+// 0 at v = 0, where it rises as the square root of v; 1 from v = 1 on, reached with two vanishing derivatives.
 double rise(double v, double exponent) {
   return v >= 1.0 ? 1.0 : std::sqrt(std::max(0.0, 1.0 - std::pow(1.0 - v, exponent)));
 }
 
-// 1 until the root begins, then 0 at s = 1, as the root of the distance from there.
+// 1 up to kRootStart, then falls to 0 at s = 1 as the square root of the distance from there.
 double root_end(double s) {
   if (s <= kRootStart) return 1.0;
   const double v = (s - kRootStart) / (1.0 - kRootStart);
@@ -34,7 +34,7 @@ double superellipse(double u, double p, double q) {
   return std::pow(std::max(0.0, 1.0 - std::pow(std::abs(u), p)), 1.0 / q);
 }
 
-// max(z, 0) with a parabola of half width k in place of the edge; exact outside it.
+// max(z, 0) with its edge replaced by a parabola of half width k; exact outside it.
 double rounded_floor(double z, double k) {
   if (z >= k) return z;
   if (z <= -k) return 0.0;
@@ -42,7 +42,7 @@ double rounded_floor(double z, double k) {
 }
 
 struct Station {
-  double midline_x_mm, left_mm, right_mm;  // mid-line and the half widths on either side of it
+  double midline_x_mm, left_mm, right_mm;  // mid-line, and half widths on either side of it
   double up_mm, down_mm;                   // height above and depth below the waist, before relief and floor
 };
 
@@ -73,7 +73,7 @@ double relief_mm(const TongueShape& shape, double x_mm, double y_mm) {
 }
 
 TissueSpan span_in(const TongueShape& shape, const Station& station, double u, double x_mm, double y_mm) {
-  // The relief fades towards tip and root together with the height, so that the outline stays closed.
+  // The relief fades with the height towards tip and root, so the outline stays closed.
   const double fade = station.up_mm / (shape.height_mm - shape.waist_mm);
   const double up = station.up_mm + relief_mm(shape, x_mm, y_mm) * fade;
   const double low = shape.waist_mm - station.down_mm * superellipse(u, 4.0, 2.5);

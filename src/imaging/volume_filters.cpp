@@ -19,7 +19,7 @@ constexpr std::size_t kLinesPerChunk = 64;
 template <class Value>
 using Image = itk::Image<Value, 3>;
 
-// Orientation does not matter to these filters, so only size and spacing go along.
+// Copies size and spacing only: orientation does not matter to these filters.
 template <class Value>
 typename Image<Value>::Pointer image_from(const Volume<Value>& volume) {
   auto image = Image<Value>::New();
@@ -42,7 +42,7 @@ Volume<Value> volume_from(const Image<Value>& image, const VolumeGrid& grid) {
   return {grid, std::vector<Value>(first, first + grid.voxel_count())};
 }
 
-// Numbers pieces by their first voxel in storage order, whatever order the filter used.
+// Renumbers pieces by their first voxel in storage order, independent of the filter's order, and returns their number.
 std::int32_t renumber(std::vector<std::int32_t>& numbers) {
   const std::int32_t largest = *std::max_element(numbers.begin(), numbers.end());
   std::vector<std::int32_t> renamed(static_cast<std::size_t>(largest) + 1, 0);
@@ -56,7 +56,7 @@ std::int32_t renumber(std::vector<std::int32_t>& numbers) {
   return count;
 }
 
-/// Weights of a Gaussian sampled as Lindeberg's discrete one (1990), from one end to the other: ITK's operator.
+/// Returns the weights of Lindeberg's discrete Gaussian (1990), from one end to the other, by ITK's operator.
 std::vector<double> gaussian_kernel(double variance_voxels) {
   itk::GaussianOperator<double, 3> kernel;
   kernel.SetDirection(0);
@@ -67,8 +67,8 @@ std::vector<double> gaussian_kernel(double variance_voxels) {
   return {kernel.Begin(), kernel.End()};
 }
 
-/// The weighted sum of lines that `line(k)` gives, in the order of the weights. Four at a time: the sums stay in
-/// registers, and their bits are those of one at a time.
+/// Sums the lines `line(k)`, weighted, in the order of the weights. Takes four at a time to keep the sums in registers;
+/// the bits are the same as one at a time.
 template <class Line>
 void sum_up(const std::vector<double>& kernel, const Line& line, std::vector<double>& sums) {
   std::fill(sums.begin(), sums.end(), 0.0);
@@ -88,8 +88,8 @@ void sum_up(const std::vector<double>& kernel, const Line& line, std::vector<dou
   }
 }
 
-/// Convolves along one axis `wide` lines that run side by side. A voxel and its neighbours along it lie `stride` apart.
-/// Values repeat beyond the border. Sums run from end to end of the kernel in double, as ITK's filter has them.
+/// Convolves `wide` adjacent lines along one axis, on which neighbouring voxels are `stride` apart. Values repeat
+/// beyond the border. Sums run from one end of the kernel to the other in double, as in ITK's filter.
 void convolve(float* first, std::size_t wide, std::size_t count, std::size_t stride,
               const std::vector<double>& kernel) {
   const auto reach = static_cast<std::ptrdiff_t>(kernel.size() / 2), last = static_cast<std::ptrdiff_t>(count) - 1;
@@ -107,7 +107,8 @@ void convolve(float* first, std::size_t wide, std::size_t count, std::size_t str
   }
 }
 
-/// The same along x, where neighbours lie side by side: each row with its border repeated, shifted by each weight.
+/// Convolves rows along x, where neighbours are adjacent in memory: sums copies of the padded row, shifted and
+/// weighted.
 void convolve_rows(float* first, std::size_t rows, std::size_t count, const std::vector<double>& kernel) {
   const std::size_t reach = kernel.size() / 2;
   std::vector<double> padded(count + 2 * reach), sums(count);

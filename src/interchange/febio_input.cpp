@@ -12,10 +12,10 @@ namespace {
 
 constexpr const char* kTissue = "tissue";
 constexpr int kLoadSteps = 10;
-/// A plane becomes two triangles that reach this many diagonals of the body's box beyond its centre.
+/// A plane becomes two triangles that form a square; half its side is this many diagonals of the body's box.
 constexpr double kPlaneReach = 3.0;
 
-/// "1,2,3" of indices from 0.
+/// Returns text such as "1,2,3" for indices that start at 0.
 template <class Indices>
 std::string numbers_from_1(const Indices& indices) {
   std::string text;
@@ -224,8 +224,8 @@ class FebioInput {
     return bc;
   }
 
-  /// Forces on vertices rather than FEBio's own tractions and body forces: these keep their direction and size as
-  /// incise's do, and on linear tets a body force is a quarter of it on each corner.
+  /// Uses forces on vertices instead of FEBio's own tractions and body forces: they keep direction and size, as in
+  /// incise. In a linear tet, a quarter of the body force acts on each corner.
   void add_vertex_forces(const std::string& name, const std::vector<VertexLoad>& loads) {
     std::vector<std::int32_t> vertices;
     for (const VertexLoad& load : loads) vertices.push_back(load.vertex.value);

@@ -15,8 +15,8 @@ namespace {
 
 // A damped fall into equilibrium: these settings brought the stretched block of SOFA's own reference fields to rest.
 constexpr double kStepS = 0.05;
-constexpr double kRampS = 1.0;       ///< over which prescribed displacements grow
-constexpr double kHeldUntilS = 1e6;  ///< SOFA lets go of a moved vertex after the last key
+constexpr double kRampS = 1.0;       ///< time over which prescribed displacements grow
+constexpr double kHeldUntilS = 1e6;  ///< SOFA releases a moved vertex after the last key
 constexpr int kSteps = 200;
 
 class SofaScene {
@@ -165,7 +165,7 @@ class SofaScene {
     node.append_attribute("template") = "Vec3";
     node.append_attribute("indices") = fmt::format("{}", fmt::join(held.vertices, " ")).c_str();
     if (is_moved) {
-      // An axis that an earlier constraint holds is held at the same place, so moving all three says nothing new.
+      // An axis that an earlier constraint holds has the same prescribed displacement, so moving all three is correct.
       node.append_attribute("keyTimes") = fmt::format("0 {} {}", kRampS, kHeldUntilS).c_str();
       const std::string end = text_of(held.displacement_mm);
       node.append_attribute("movements") = fmt::format("0 0 0  {}  {}", end, end).c_str();

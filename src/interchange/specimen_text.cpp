@@ -78,7 +78,7 @@ void require_known_law(const TissueModel& model, const char* format) {
 void add_comment(pugi::xml_node parent, const std::string& text) {
   // Two hyphens would end a comment early; titles come from outside.
   std::string safe = text;
-  // XML 1.0 has no control characters but tab and the ends of lines.
+  // XML 1.0 allows no control characters except tab, line feed and carriage return.
   std::erase_if(safe, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
   for (std::size_t at = safe.find("--"); at != std::string::npos; at = safe.find("--")) safe.replace(at, 2, "- -");
   parent.append_child(pugi::node_comment).set_value((" " + safe + " ").c_str());

@@ -29,10 +29,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPart = "part";    // what is being written
-constexpr const char* kOlder = "older";  // what a new folder is about to replace
+constexpr const char* kPart = "part";    // a file or folder that is being written
+constexpr const char* kOlder = "older";  // a folder that a new one is about to replace
 
-/// A name beside `path` that no other thread or process uses, hidden from listings.
+/// Returns a hidden name beside `path` that no other thread or process uses.
 fs::path temporary_beside(const fs::path& path, const char* ending = kPart) {
   static std::atomic<unsigned> count = 0;  // only makes names differ; never part of a result
   std::error_code error;
@@ -42,7 +42,7 @@ fs::path temporary_beside(const fs::path& path, const char* ending = kPart) {
   }
 }
 
-/// What a temporary name as above says.
+/// The parts of such a temporary name.
 struct TemporaryName {
   std::string of;
   pid_t maker;
@@ -56,7 +56,7 @@ std::optional<TemporaryName> parsed(const std::string& name) {
   return TemporaryName{match[1], static_cast<pid_t>(std::stol(match[2])), match[3] == kOlder};
 }
 
-/// Whether a folder that appears as a whole is being filled here: it is brought to the disk as a whole, too.
+/// Whether `path` lies inside an unfinished AtomicFolder, whose commit syncs everything at once.
 bool is_in_temporary(const fs::path& path) {
   const fs::path parent = path.parent_path();
   return std::any_of(parent.begin(), parent.end(), [](const fs::path& part) { return parsed(part.string()).has_value(); });
@@ -64,12 +64,12 @@ bool is_in_temporary(const fs::path& path) {
 
 }  // namespace
 
-/// A file or folder that is kept locked as long as it has a temporary name, so that nobody takes it for an abandoned one: numbers of processes
-/// are no proof where two machines or containers share a folder.
+/// Keeps a file or folder locked while it has a temporary name, so that no process takes it for an abandoned one.
+/// Process numbers alone prove nothing if two machines or containers share a folder.
 class HeldTemporary {
  public:
   explicit HeldTemporary(int file) : file_(file) {
-    if (file_ >= 0) ::flock(file_, LOCK_EX | LOCK_NB);  // where no locks are known, the number of the process has to do
+    if (file_ >= 0) ::flock(file_, LOCK_EX | LOCK_NB);  // without support for locks, the process number must suffice
   }
   ~HeldTemporary() {
     if (file_ >= 0) ::close(file_);
@@ -91,15 +91,15 @@ bool is_held(const fs::path& path) {
   return is_locked;
 }
 
-/// Also true where nobody may ask.
+/// Also true if this process lacks permission to find out.
 bool is_running(pid_t process) { return ::kill(process, 0) == 0 || errno != ESRCH; }
 
-/// "out/" means the folder "out".
+/// Returns "out" for "out/".
 fs::path without_trailing_slash(const fs::path& path) {
   return path.has_filename() ? path : path.parent_path();
 }
 
-/// What a link points to is replaced, not the link; a device or a pipe must never be replaced by a file.
+/// Returns the file that writing to `name` replaces: the target of a link, not the link.
 fs::path replaced_by(const fs::path& name) {
   std::error_code error;
   return fs::is_symlink(name, error) && fs::exists(name, error) ? fs::canonical(name) : name;
@@ -108,7 +108,7 @@ fs::path replaced_by(const fs::path& name) {
 constexpr const char* kManifest = "manifest.json";
 constexpr const char* kFiles = "files";
 
-/// Everything below a folder that is not a folder, links and hidden files too, relative to it.
+/// Returns the relative paths of everything below a folder but folders; includes links and hidden files.
 std::set<std::string> files_below(const fs::path& folder) {
   std::set<std::string> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
@@ -141,7 +141,8 @@ struct Abandoned {
   TemporaryName name;
 };
 
-/// Temporary names that nobody writes to any more; with `only`, those of that one target.
+/// Returns the temporary files and folders that no process writes to any more. @param only  one target; empty: all
+/// @param with_own  also those with this process's number, which an earlier process then left
 std::vector<Abandoned> abandoned_in(const fs::path& folder, const std::string& only, bool with_own) {
   std::error_code error;
   std::vector<Abandoned> found;
@@ -154,7 +155,7 @@ std::vector<Abandoned> abandoned_in(const fs::path& folder, const std::string& o
   return found;
 }
 
-/// An older folder whose successor never arrived takes its name again; everything else goes.
+/// Gives an older folder its name back if no successor took it; removes everything else.
 void tidy(const std::vector<Abandoned>& found, const fs::path& folder) {
   std::error_code error;
   for (const Abandoned& one : found) {
@@ -171,7 +172,7 @@ void remove_abandoned_of(const fs::path& target) {
   tidy(abandoned_in(folder_of(target), target.filename().string(), false), folder_of(target));
 }
 
-/// Of incise: the keys that every manifest.json has had.
+/// Whether it is a manifest of incise: it has the keys that every version has written.
 bool is_manifest(const nlohmann::ordered_json& json) {
   return json.is_object() && json.contains("version") && json.contains("commit") && json.contains("command") && json.contains("settings");
 }
@@ -265,7 +266,7 @@ void remove_replaceable(const fs::path& name) {
   const fs::path folder = without_trailing_slash(name);
   std::error_code error;
   if (!fs::is_directory(folder, error)) return;
-  // Under a temporary name first: killed halfway, the rest is nobody's result and is removed later.
+  // Under a temporary name first: if this is killed halfway, the rest does not look like a result and is removed later.
   const fs::path temporary = temporary_beside(folder);
   fs::rename(folder, temporary, error);
   if (!error) fs::remove_all(temporary, error);
@@ -295,7 +296,7 @@ AtomicFolder::~AtomicFolder() {
 void AtomicFolder::commit() {
   INCISE_REQUIRE(!is_committed_, "expected one commit, found a second");
   list_files_in_manifest(temporary_);
-  require_replaceable(target_);  // something may have come in while this was computed
+  require_replaceable(target_);  // files may have been added since the constructor
   fs::path replaced;
   std::string problem = synced_tree(temporary_);
   if (problem.empty()) problem = put_in_place(temporary_, target_, temporary_beside(target_, kOlder), replaced);

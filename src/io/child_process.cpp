@@ -17,7 +17,7 @@
 namespace incise::io_detail {
 namespace {
 
-/// A DataError whose sentence was composed in the other process.
+/// A DataError whose message was composed in the other process.
 class RelayedError : public DataError {
  public:
   RelayedError(const std::filesystem::path& file, std::string text) : DataError(file, "", "", ""), text_(std::move(text)) {}
@@ -35,7 +35,7 @@ constexpr bool kBoundsAddressSpace = true;
 
 enum : char { kResult = 'R', kDataError = 'D', kOtherError = 'E' };
 
-/// Address space that this process holds now, bytes; 0: not known.
+/// Returns the address space that this process holds now, bytes; 0 if unknown.
 std::uint64_t held_address_space() {
   std::ifstream stream("/proc/self/statm");
   std::uint64_t pages = 0;
@@ -61,10 +61,10 @@ bool write_all(int to, const char* data, std::size_t size) {
   return true;
 }
 
-/// The copy's part: it says how the work ended, in one byte, then gives the bytes or the sentence.
+/// Runs in the copy: writes one byte for how the work ended, then the result or the message.
 [[noreturn]] void be_the_child(int to, const ChildLimits& limits, const std::function<std::string()>& work) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // killed, the waiting process leaves nobody behind who holds its locks
-  std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the process that waits
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // dies with the waiting process, whose locks it would otherwise keep
+  std::signal(SIGINT, SIG_IGN);  // the waiting process handles Ctrl-C
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.processor_s);
   if (kBoundsAddressSpace) limit(RLIMIT_AS, held_address_space() + limits.memory_bytes);

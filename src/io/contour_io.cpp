@@ -55,9 +55,9 @@ Contour read_polyline(const std::filesystem::path& path, bool is_closed) {
   return contour;
 }
 
-/// A closed curve's last point is about as far from its first as neighbours are from each other.
+/// Refuses a closed curve whose ends are much farther apart than neighbouring points.
 void require_closing(const Contour& contour, const std::filesystem::path& path) {
-  constexpr double kWidestGap = 4.0;  // times the longest way between neighbours
+  constexpr double kWidestGap = 4.0;  // times the longest distance between neighbours
   if (!contour.is_closed || contour.points.size() < 3) return;
   double longest_mm = 0.0;
   for (std::size_t i = 0; i + 1 < contour.points.size(); ++i) {
@@ -71,7 +71,7 @@ void require_closing(const Contour& contour, const std::filesystem::path& path) 
       "a closed curve", "`incise evaluate --open` takes an open incision");
 }
 
-/// What is read of Slicer's markups.
+/// The parts of Slicer's markups that are read.
 struct ControlPoint {
   Vec3 position = Vec3::Zero();
   std::optional<std::string> status;
@@ -94,7 +94,7 @@ void describe(Visitor& v, Markup& m) {
   std::size_t system = 2;
   if (v.optional({"coordinateSystem"}, true)) v.choice({"coordinateSystem"}, system, kSystems);
   m.is_ras = system < 2;
-  std::optional<std::vector<std::string>> units;  // one text, or code, scheme and meaning
+  std::optional<std::vector<std::string>> units;  // one text, or a list of code, scheme and meaning
   v("coordinateUnits", units);
   if (units && std::find(units->begin(), units->end(), "mm") == units->end())
     v.refuse({"coordinateUnits"}, fmt::format("{}", fmt::join(*units, ", ")), "mm");
@@ -107,7 +107,7 @@ void describe(Visitor& v, Markups& m) {
   v("markups", m.markups);
 }
 
-/// One form for what versions of Slicer write in two: a number as its text, one unit as a list.
+/// Unifies what versions of Slicer write in two forms: turns a number into text, and a single unit into a list.
 nlohmann::ordered_json in_one_form(nlohmann::ordered_json document) {
   if (!document.is_object() || !document.contains("markups") || !document["markups"].is_array()) return document;
   for (auto& markup : document["markups"]) {

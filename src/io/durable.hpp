@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <string>
 
-// What makes files outlive a crash of the machine, and folders change places in one step. Messages name the caller's target: these functions
-// return what went wrong in the system's words, empty where nothing did.
+// Functions that make files survive a crash of the machine, and that swap folders in one step. They return the system's
+// error message, empty on success, because the caller's message must name its own target.
 namespace incise {
 
-/// Brings a file or a folder's list of names to the disk. What a file system cannot bring there (EINVAL) counts as done.
+/// Syncs a file, or a folder's list of names, to the disk. If the file system does not support this (EINVAL), it counts
+/// as done.
 [[nodiscard]] std::string synced(const std::filesystem::path& path);
 
 /// The same for a folder and everything below it; links are not followed.
@@ -15,9 +16,10 @@ namespace incise {
 
 enum class Exchange { IfPossible, Never };
 
-/// Puts a folder at a name. An older folder there is moved to `older` (made by nobody yet) or, where the file system can exchange two names in
-/// one step, to `folder`; `replaced` says which it is, empty where there was none. Killed at any moment, the older or the new folder is at the
-/// name, but for Exchange::Never, where for one moment the older one has the name `older`.
+/// Renames `folder` to `target`. An older folder there moves to `folder` if the file system can exchange two names in
+/// one step, otherwise to `older`, which must not exist. `replaced` returns its new name; empty: there was none. If the
+/// process is killed at any moment, the older or the new folder is at `target`; without an exchange, the older one may
+/// be at `older` instead.
 [[nodiscard]] std::string put_in_place(const std::filesystem::path& folder, const std::filesystem::path& target, const std::filesystem::path& older,
                                        std::filesystem::path& replaced, Exchange exchange = Exchange::IfPossible);
 

@@ -15,7 +15,7 @@ bool begins_as_an_entry(const std::filesystem::path& file) {
   std::string begin(kCacheMagic.size(), '\0');
   in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
   begin.resize(static_cast<std::size_t>(in.gcount()));
-  return kCacheMagic.starts_with(begin);  // one that was cut short is damaged, not foreign
+  return kCacheMagic.starts_with(begin);  // a truncated entry is damaged, not foreign
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kExpected = "a folder that no other run writes into";
 
-/// The process that holds a lock on an inode, as Linux lists it; 0 where the list does not say.
+/// Returns the process that holds a lock on an inode, from Linux's list of locks; 0 if it is not listed.
 pid_t holder_of(ino_t inode) {
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
@@ -41,7 +41,7 @@ std::string description_of(pid_t process) {
   return fmt::format("a folder that process {} writes into ({})", process, command.empty() ? "of unknown name" : command);
 }
 
-/// Whether a name still leads to the folder that was opened: its owner may have removed it in between.
+/// Whether a name still leads to the folder that was opened; its owner may have removed it since.
 bool is_still_there(int file, const std::filesystem::path& folder) {
   struct stat opened {};
   struct stat named {};
@@ -69,7 +69,7 @@ int open_folder(const std::filesystem::path& folder) {
 }  // namespace
 
 FolderLock::FolderLock(std::filesystem::path folder) : folder_(std::move(folder)) {
-  constexpr int kMostTries = 100;  // each is a folder that another process removed at this very moment
+  constexpr int kMostTries = 100;  // a try fails if another process removes the folder between opening and locking it
   for (int i = 0; i < kMostTries; ++i) {
     file_ = open_folder(folder_);
     if (::flock(file_, LOCK_EX | LOCK_NB) != 0) {

@@ -15,7 +15,7 @@ namespace {
 constexpr long long kMostOfGmsh = 0x7FFFFFFF;
 constexpr int kTet4 = 4;
 
-/// Nodes of a Gmsh element kind that bounds a body rather than fills it; 0 for all others.
+/// Returns the number of nodes of a Gmsh element type that bounds a body rather than fills it; 0 for all others.
 int nodes_of_lower_dimensional(int kind) {
   switch (kind) {
     case 1:
@@ -39,7 +39,7 @@ int nodes_of_lower_dimensional(int kind) {
   }
 }
 
-/// Everything that the sections of one file add to.
+/// Reads the sections of one file into a mesh.
 class GmshReader {
  public:
   GmshReader(const std::filesystem::path& path, std::string_view text) : cursor_(path, text) {}
@@ -174,7 +174,7 @@ class GmshReader {
     }
   }
 
-  /// Of the model's entities only the physical tags of the volumes matter here; each volume is one line.
+  /// Reads the physical tags of the model's volumes, one line each; skips all other entities.
   void read_entities() {
     std::array<std::size_t, 4> counts{};
     for (std::size_t& count : counts) count = cursor_.count("entities");

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The status behind links. @throws DataError where there is nothing.
+/// Returns the status of a path, following links. @throws DataError if there is nothing.
 fs::file_status status_of(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
@@ -29,7 +29,7 @@ fs::file_status status_of(const fs::path& path) {
 
 constexpr std::size_t kLongestHeader = 64 << 10;  // bytes; a header that lists its slices is long
 
-/// The header's lines; of a detached one all lines.
+/// Returns the trimmed lines in the first kLongestHeader bytes of a file.
 std::vector<std::string> header_lines(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(kLongestHeader, '\0');
@@ -44,7 +44,7 @@ std::vector<std::string> header_lines(const fs::path& path) {
   return lines;
 }
 
-/// The value of "key: value" or "key = value"; nothing for another line. Case does not count.
+/// Returns the value of "key: value" or "key = value"; nothing for any other line. Ignores the case of the line's key.
 std::optional<std::string> value_after(const std::string& line, std::string_view key, char mark) {
   const std::size_t at = line.find(mark);
   if (at == std::string::npos || io_detail::lower_case(io_detail::trimmed(std::string_view(line).substr(0, at))) != key) return std::nullopt;
@@ -53,7 +53,7 @@ std::optional<std::string> value_after(const std::string& line, std::string_view
 
 constexpr int kMostSlices = 100000;
 
-/// "slice%03d.raw 1 20 1": the names of a numbered series. A pattern of another kind has none.
+/// Returns the names of a numbered series such as "slice%03d.raw 1 20 1"; none for text of any other form.
 std::vector<std::string> numbered(const std::string& value) {
   std::vector<std::string> words;
   for (std::size_t begin = 0; begin < value.size();) {
@@ -70,7 +70,7 @@ std::vector<std::string> numbered(const std::string& value) {
   const auto first = io_detail::to_integer(words[1]), last = io_detail::to_integer(words[2]);
   const auto step = words.size() > 3 ? io_detail::to_integer(words[3]) : std::optional<long long>(1);
   const auto width = width_text.empty() ? std::optional<long long>(0) : io_detail::to_integer(width_text);
-  constexpr long long kGreatest = 1'000'000'000;  // so that no sum or difference overflows
+  constexpr long long kGreatest = 1'000'000'000;  // no sum or difference overflows
   const auto is_small = [](const std::optional<long long>& n) { return n && *n >= -kGreatest && *n <= kGreatest; };
   if (!is_small(first) || !is_small(last) || !is_small(step) || !width || *step < 1 || *width < 0 || *width > 20 ||
       (*last - *first) / *step > kMostSlices)
@@ -83,7 +83,7 @@ std::vector<std::string> numbered(const std::string& value) {
   return names;
 }
 
-/// What a header names as its data: one file, a numbered series, or the lines that follow it.
+/// Returns the data files that a header's line `at` names: one file, a numbered series, or the lines that follow it.
 std::vector<std::string> named_data(const std::vector<std::string>& lines, std::size_t at, const std::string& value) {
   const std::string word = io_detail::lower_case(value.substr(0, value.find_first_of(" \t")));
   if (word == "local") return {};

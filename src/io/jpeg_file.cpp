@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 constexpr double kMostJpegPixelsPerByte = 8.0 * 64.0;  // one bit for each block of 8 x 8 pixels
 constexpr int kMostJpegScans = 200;  // progressive files have about ten; each costs as much as a whole picture
 
-/// libjpeg's error handler, with a way out: its errors must not return.
+/// libjpeg's error handler, with a jump target, because its error routine must not return.
 struct JpegHandler {
-  jpeg_error_mgr manager{};  ///< first, so that libjpeg's pointer to it is one to this
+  jpeg_error_mgr manager{};  ///< must be first: libjpeg's pointer to it is cast to JpegHandler*
   std::jmp_buf out{};
   char words[JMSG_LENGTH_MAX] = {};
   bool stops_at_warnings = false;
@@ -31,15 +31,15 @@ struct JpegHandler {
   std::longjmp(handler->out, 1);
 }
 
-/// A warning in the header is about odd bytes of the camera's maker, unless the file ends; in the picture it is damage
-/// that would be painted over in grey.
+/// Treats a warning as an error if it means damage: in the picture always, because libjpeg would fill the gap with
+/// grey; in the header only at the end of the file, because other warnings there are about the camera maker's bytes.
 void warn_jpeg(j_common_ptr info, int level) {
   const bool is_damage =
       reinterpret_cast<JpegHandler*>(info->err)->stops_at_warnings || info->err->msg_code == JWRN_JPEG_EOF;
   if (level < 0 && is_damage) leave_jpeg(info);
 }
 
-/// Between setjmp and longjmp nothing has a destructor.
+/// Reads one JPEG file. No object with a destructor may exist between setjmp and longjmp.
 class JpegReading {
  public:
   explicit JpegReading(std::string_view bytes) : bytes_(bytes) {
@@ -93,7 +93,7 @@ class JpegReading {
   jpeg_progress_mgr progress_{};
 };
 
-/// The orientation in a JPEG's EXIF block, 1 to 8; 1, the picture as it is, where none is stated.
+/// Returns the orientation in a JPEG's EXIF block, 1 to 8; 1 (not turned) if none is stated.
 int orientation_in(std::string_view exif) {
   constexpr std::string_view kBegin("Exif\0\0", 6);
   if (!exif.starts_with(kBegin)) return 1;
@@ -145,7 +145,7 @@ StoredPixels read_jpeg(std::string_view bytes, const fs::path& name) {
     pixels.per_width = info.X_density;
     pixels.per_height = info.Y_density;
   }
-  const int orientation = orientation_of(info);  // libjpeg drops it with the last row
+  const int orientation = orientation_of(info);  // before reading the rows: libjpeg drops it with the last one
   if (!reading->reads_rows(pixels.bytes.data(), pixels.channels)) refuse_picture(name, "", reading->words(), "JPEG");
   return upright(std::move(pixels), orientation);
 }

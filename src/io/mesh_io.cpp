@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint8_t kVtkTet = 10;
 
-/// Points, lines, triangles, polygons, pixels and quads, straight or curved: what bounds a body rather than fills it.
+/// Whether a VTK cell type bounds a body rather than fills it: points, lines, triangles, polygons, pixels and quads,
+/// straight or curved.
 bool is_lower_dimensional(double vtk_type) {
   return (vtk_type >= 0 && vtk_type <= 9) || (vtk_type >= 21 && vtk_type <= 23) || vtk_type == 28 || vtk_type == 34;
 }
@@ -95,7 +96,7 @@ double volume_of(const TetMesh& mesh, const Tet& tet) {
                        vertex(mesh.vertices, tet[3]));
 }
 
-/// Turns all tets over if all are negative, and says so; refuses anything mixed or flat.
+/// Turns all tets over if all are negative, with a notice; refuses mixed signs and flat tets.
 void make_positive(TetMesh& mesh, const std::filesystem::path& path, Monitor& monitor) {
   std::size_t negative = 0, first_negative = 0;
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {

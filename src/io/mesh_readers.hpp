@@ -8,8 +8,7 @@
 #include <string>
 #include <vector>
 
-/// One function per tet mesh format. They return what the file says; read_tet_mesh checks indices, volumes and
-/// orientation.
+/// One function per tet mesh format. They return the content of the file; read_tet_mesh checks volumes and orientation.
 namespace incise::io_detail {
 
 [[nodiscard]] TetMesh read_vtu(const std::filesystem::path& path);
@@ -24,15 +23,15 @@ struct VtkCells {
   std::vector<double> types;         ///< VTK cell type numbers
 };
 
-/// The tets among the cells, and which cells they were. Lower-dimensional cells are left out. @param points  how many
-/// there are.
-/// @throws DataError naming the first cell with another volume element, a wrong number of points, or an index out of
-/// range.
+/// Returns the tets among the cells, and the index of each one's cell. Skips lower-dimensional cells.
+/// @param points  number of points
+/// @throws DataError naming the first cell that is another volume element, has a wrong number of points, or an index
+///         out of range.
 [[nodiscard]] std::pair<std::vector<Tet>, std::vector<std::size_t>> tets_among(const VtkCells& cells,
                                                                                std::size_t points,
                                                                                const std::filesystem::path& path);
 
-/// The items of `array` that belong to the chosen cells.
+/// Returns the items of `array` that belong to the chosen cells.
 [[nodiscard]] DataArray chosen(const DataArray& array, const std::vector<std::size_t>& cells);
 
 }  // namespace incise::io_detail

@@ -6,20 +6,19 @@
 
 namespace incise::io_detail {
 
-/// The shortest decimal text that reads back to the same double; independent of the locale.
+/// Returns the shortest decimal text that reads back to the same double, whatever the locale.
 [[nodiscard]] std::string number_text(double value);
 
-/// The number that the whole of `text` spells (a leading + is fine; nan and inf are numbers here); nothing if it spells
-/// none.
+/// Parses the whole of `text` as a number; nothing if it is none. Accepts a leading +, nan and inf.
 [[nodiscard]] std::optional<double> to_number(std::string_view text);
 
-/// The integer that the whole of `text` spells.
+/// Parses the whole of `text` as an integer; nothing if it is none. Accepts a leading +.
 [[nodiscard]] std::optional<long long> to_integer(std::string_view text);
 
-/// The text with blanks and control characters removed at both ends.
+/// Returns the text without blanks and control characters at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-/// ASCII letters made small.
+/// Returns the text with ASCII letters in lower case.
 [[nodiscard]] std::string lower_case(std::string_view text);
 
 }  // namespace incise::io_detail

@@ -22,12 +22,12 @@ constexpr const char* kVerdict = "verdict";
 constexpr const char* kDigest = "digest_sha256";
 constexpr double kUnitAxisTolerance = 1e-4;  // an axis typed with four digits passes; 0.5 µm at 5 mm depth
 
-/// What `path.json` holds beside the verdict.
+/// The content of `path.json` without the verdict.
 struct PathFile {
   ToolPath path;
 };
 
-/// A waypoint as a file has it: its axis is a unit vector.
+/// A waypoint as stored in a file: its axis is a unit vector.
 struct WaypointEntry {
   Waypoint waypoint;
 };
@@ -38,7 +38,7 @@ void describe(Visitor& v, WaypointEntry& entry) {
     v.refuse({"axis"}, fmt::format("a vector of length {:.6g}", length), "a unit vector");
 }
 
-/// A text that is not stated where it is empty.
+/// Describes an optional text; an empty one is not written.
 template <class IsGood>
 void describe_stated(Visitor& v, Field field, std::string& text, const IsGood& is_good, std::string_view expected) {
   field.is_omitted = true;
@@ -97,7 +97,7 @@ ordered_json document_of(const ToolPath& path) {
   return incise::to_json(PathFile{path});
 }
 
-/// Over a path and what is said of it: a change of either shows.
+/// Returns a digest of a path and its verdict; it changes with either.
 std::string digest_of(const ToolPath& path, const Verdict& verdict) {
   return sha256_of_text(document_of(path).dump() + to_json(verdict).dump());
 }
@@ -119,7 +119,7 @@ void require_tumor_size(const ToolPath& path, const std::filesystem::path& file)
 
 std::string path_json(const ToolPath& path) {
   const ordered_json document = document_of(path);
-  // What cannot be read back must not be written: the reader's rules are the rules.
+  // A path that cannot be read back must not be written, so the reader's rules apply.
   try {
     static_cast<void>(path_in(document, "tool path"));
   } catch (const DataError& error) {
@@ -142,7 +142,7 @@ void write_tool_path(const std::filesystem::path& file, const ToolPath& path, co
 
 namespace {
 
-/// What a path's file says of the cut along it, with the digest that seals both; nothing where it says nothing.
+/// The verdict in a path's file, with the digest of path and verdict.
 struct StatedVerdict {
   Verdict verdict;
   std::string digest;

@@ -28,7 +28,7 @@ StoredPixels stored(std::string_view bytes, const fs::path& name) {
   throw DataError(name, "", bytes.empty() ? "an empty file" : "another kind of file", "a picture: PNG, JPEG or TIFF");
 }
 
-/// Measures are taken along rows and columns alike.
+/// Decodes a file and refuses pixels that are not square, because lengths are measured along rows and columns alike.
 StoredPixels decoded(std::string_view bytes, const fs::path& name) {
   constexpr double kSquare = 0.01;
   StoredPixels pixels = stored(bytes, name);
@@ -63,7 +63,7 @@ std::vector<std::uint8_t> rgb_on_white(const StoredPixels& from) {
   return rgb;
 }
 
-/// Whether some pixel is more than noise away from grey.
+/// Whether some pixel differs from grey by more than noise.
 bool has_color(const std::vector<std::uint8_t>& rgb) {
   constexpr int kGreyTolerance = 8;
   for (std::size_t i = 0; i < rgb.size(); i += 3) {

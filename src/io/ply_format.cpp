@@ -26,7 +26,7 @@ namespace {
 
 struct Property {
   std::string name;
-  std::string type;        ///< as VTK XML names it
+  std::string type;        ///< VTK XML's name for it
   std::string count_type;  ///< of a list; empty: one number
 };
 
@@ -60,7 +60,7 @@ class PlyReader {
     return std::move(surface_);
   }
 
-  /// The same for a cloud with holes.
+  /// Reads a cloud with holes.
   GridCloud read_grid() {
     GridCloud grid;
     grid.cloud = read();
@@ -158,7 +158,7 @@ class PlyReader {
     return numbers_from_bytes(std::string(cursor_.bytes(size_of_vtk_type(type), what)), type, false).front();
   }
 
-  /// A number, or `nan` where nothing was measured.
+  /// Reads a number, or `nan` where nothing was measured.
   double number_or_none(std::string_view what) {
     const std::string_view word = cursor_.word(what);
     const std::string text = lower_case(std::string(word));
@@ -168,7 +168,7 @@ class PlyReader {
     return *value;
   }
 
-  /// The fewest bytes that one item of an element takes: an ascii number is a digit and a blank.
+  /// Returns the fewest bytes that one item of an element takes; an ascii number has at least a digit and a blank.
   [[nodiscard]] std::size_t least_bytes(const Element& element) const {
     std::size_t bytes = 0;
     for (const Property& property : element.properties) {
@@ -178,7 +178,7 @@ class PlyReader {
     return bytes;
   }
 
-  /// Before anything is made room for: as many items as the header states have to fit into what is left of the file.
+  /// Checks, before allocating memory, that the rest of the file can hold the number of items that the header states.
   void require_room(const Element& element) const {
     const std::size_t last_blank = is_binary_ ? 0 : 1;  // the last number of a file may end it
     if (element.count <= (cursor_.bytes_left() + last_blank) / std::max<std::size_t>(1, least_bytes(element))) return;
@@ -292,7 +292,7 @@ class PlyReader {
   std::vector<std::vector<double>> polygons_;
 };
 
-/// The names of an array's columns as PLY properties.
+/// Returns the names of the PLY properties that hold an array's columns.
 std::vector<std::string> column_names(const std::string& name, int components) {
   if (name == "normals" && components == 3) return {"nx", "ny", "nz"};
   if (components == 1) return {name};

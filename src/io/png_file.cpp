@@ -16,9 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostPngBits = 8.0 * 1100.0;  // for a byte of the file: zlib packs 1032 bytes into one
+constexpr double kMostPngBits = 8.0 * 1100.0;  // per byte of the file: zlib packs 1032 bytes into one
 
-/// What libpng reads from or writes_png to, and what it says when it gives up.
+/// Source or target of libpng's reading or writing, and its error message.
 struct PngTransfer {
   std::string_view in;
   std::size_t at = 0;
@@ -50,7 +50,7 @@ void flush_png(png_structp /*png*/) {}
 
 void pass_over_png(png_structp /*png*/, png_const_charp /*words*/) {}
 
-/// One reading. Between setjmp and longjmp nothing has a destructor.
+/// Reads one PNG file. No object with a destructor may exist between setjmp and longjmp.
 class PngReading {
  public:
   PngReading(std::string_view bytes, const fs::path& name) : name_(name) {
@@ -102,7 +102,7 @@ class PngReading {
     png_set_read_fn(png_, &transfer_, read_png_bytes);
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_user_limits(png_, 0x7fffffff, 0x7fffffff);
-    png_set_chunk_cache_max(png_, 1);  // texts are not unpacked: a thousand of them would fill 8 GB
+    png_set_chunk_cache_max(png_, 1);  // do not unpack texts: a thousand of them would fill 8 GB
     png_read_info(png_, info_);
     return true;
   }

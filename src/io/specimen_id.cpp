@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestId = 64;
-constexpr std::size_t kDigits = 12;          // of the digest, in the id of a specimen that nobody named
-constexpr std::size_t kHeaderBytes = 65536;  // of a file whose first lines may say it
+constexpr std::size_t kDigits = 12;          // of the digest, in an id made from the data
+constexpr std::size_t kHeaderBytes = 65536;  // searched for the id at the start of a file
 constexpr const char* kKey = "specimen_id";
 
 std::string checked(const std::string& id, const fs::path& file) {
@@ -33,7 +33,7 @@ std::string id_in_json(const fs::path& file) {
   return checked(document.at(kKey).get<std::string>(), file);
 }
 
-/// What follows `mark` in the file's first lines.
+/// Returns the id after `mark` in the file's first lines; empty if there is none.
 std::string id_in_header(const fs::path& file, std::string_view mark) {
   std::ifstream stream(file, std::ios::binary);
   std::string text(kHeaderBytes, '\0');
@@ -45,7 +45,7 @@ std::string id_in_header(const fs::path& file, std::string_view mark) {
   return checked(text.substr(begin, text.find_first_of("\r\n", begin) - begin), file);
 }
 
-/// A manifest.json may be another program's: what cannot be read as one of ours lists nothing.
+/// Returns a manifest of incise; null for a manifest.json of another program, or one that cannot be read.
 nlohmann::ordered_json manifest_or_nothing(const fs::path& file) {
   try {
     nlohmann::ordered_json document = read_json(file);
@@ -69,13 +69,13 @@ bool lists(const fs::path& manifest, const std::string& name) {
 std::string id_in_manifest(const fs::path& file) {
   if (const fs::path beside = manifest_beside(file); fs::exists(beside)) {
     const nlohmann::ordered_json document = read_json(beside);
-    // Of another file that had this name: whose this one is, nobody says.
+    // The manifest belongs to another file that had this name, so nothing states this file's id.
     if (document.is_object() && document.contains("result_sha256") &&
         document.at("result_sha256") != sha256_of_file(file))
       return "";
     return id_in_json(beside);
   }
-  // A result's folder, or the file in a folder of its own within it (frames/…).
+  // The file lies in a result's folder, or in a folder within it (frames/…).
   fs::path name = file.filename();
   fs::path folder = file.parent_path();
   for (int level = 0; level < 2; ++level) {

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kHeaderSize = 80;
 constexpr std::size_t kRecordSize = 50;  // normal and three corners as 32-bit floats, and two bytes
 
-/// STL repeats a corner in every triangle; corners with equal coordinates become one vertex.
+/// Makes one vertex of corners with equal coordinates, because STL repeats a corner in every triangle.
 class Merger {
  public:
   explicit Merger(TriMesh& surface) : surface_(surface) {}
@@ -63,7 +63,7 @@ TriMesh read_ascii(const std::filesystem::path& path, std::string_view text) {
     const std::string_view keyword = cursor.word("'facet' or 'endsolid'");
     if (keyword == "endsolid") break;
     if (keyword != "facet") cursor.fail(shown_word(keyword), "'facet' or 'endsolid'");
-    cursor.line();  // the normal: the order of the corners says the same
+    cursor.line();  // the normal, which follows from the order of the corners
     cursor.require("outer");
     cursor.require("loop");
     Triangle triangle;

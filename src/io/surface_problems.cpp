@@ -17,7 +17,7 @@ struct Side {
   auto operator<=>(const Side&) const = default;
 };
 
-/// Collects the places of one kind.
+/// Counts the places of one kind of problem and keeps the first.
 struct Tally {
   std::array<std::size_t, 2> first{0, 0};
   std::size_t count = 0;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-/// One function per surface format, in LPS. They return what the file says, with or without triangles.
+/// One function per surface format. They return the content of the file in LPS, with or without triangles.
 namespace incise::io_detail {
 
 [[nodiscard]] TriMesh read_ply(const std::filesystem::path& path);

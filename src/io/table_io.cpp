@@ -14,7 +14,7 @@
 namespace incise {
 namespace {
 
-/// The fields of one row of a CSV file without quoting.
+/// Splits one row of a CSV file without quotes into fields.
 std::vector<std::string_view> split(std::string_view row) {
   std::vector<std::string_view> fields;
   while (true) {
@@ -29,7 +29,7 @@ std::string joined(const std::vector<std::string_view>& names) {
   return fmt::format("{}", fmt::join(names, ",")).substr(0, 80);
 }
 
-/// Where the names are among the header's columns.
+/// Returns the index of each name among the header's columns.
 std::vector<std::size_t> find_columns(const std::vector<std::string_view>& header,
                                       const std::vector<std::string>& names, const std::filesystem::path& path,
                                       std::size_t line) {

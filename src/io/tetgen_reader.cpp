@@ -11,7 +11,7 @@ namespace {
 
 constexpr long long kMostTetrahedra = 0x7FFFFFFF;
 
-/// Reads `count` values into each of the named columns' next place.
+/// Reads one value for each column and appends it.
 void read_attributes(TextCursor& cursor, std::vector<DataArray>& columns) {
   for (DataArray& column : columns) column.values.push_back(cursor.number("attribute"));
 }
@@ -20,7 +20,7 @@ void store(std::map<std::string, DataArray>& data, std::vector<DataArray>& colum
   for (std::size_t k = 0; k < columns.size(); ++k) data[fmt::format("attribute_{}", k)] = std::move(columns[k]);
 }
 
-/// Reads the points; returns the number of the first one, 0 or 1.
+/// Reads the points. @returns the number of the first one, 0 or 1.
 long long read_nodes(TextCursor& cursor, TetMesh& mesh) {
   const std::size_t count = cursor.count("points");
   cursor.integer("dimension", 3, 3);

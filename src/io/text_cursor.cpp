@@ -10,7 +10,6 @@
 #include <cmath>
 
 namespace incise::io_detail {
-/// Cut to a readable length, unprintable bytes as '?'.
 std::string shown_word(std::string_view word) {
   std::string text(word.substr(0, 40));
   for (char& c : text) {

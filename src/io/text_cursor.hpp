@@ -10,34 +10,34 @@
 
 namespace incise::io_detail {
 
-/// A word as it appears in a message: in quotes, cut to 40 bytes, unprintable bytes as '?'.
+/// Returns a word as messages show it: in quotes, cut to 40 bytes, unprintable bytes as '?'.
 [[nodiscard]] std::string shown_word(std::string_view word);
 
-/// Walks through the text of a file word by word or line by line and knows the line it is at, so that whatever is wrong
-/// is reported with its place. Does not own the text.
+/// Reads the text of a file word by word or line by line, and names the line in errors. Owns neither text nor path.
 class TextCursor {
  public:
-  /// @param comment  from this character to the end of the line everything is skipped; 0 = no comments.
+  /// @param comment  character that begins a comment, which ends with the line; 0: no comments
   TextCursor(const std::filesystem::path& path, std::string_view text, char comment = 0)
       : path_(path), text_(text), comment_(comment) {}
 
-  /// Whether only blanks and comments are left.
+  /// Whether only blanks and comments remain; skips them.
   [[nodiscard]] bool is_at_end();
-  /// Next word. @throws DataError at the end of the file, naming `expected`.
+  /// Returns the next word. @throws DataError at the end of the file, naming `expected`.
   std::string_view word(std::string_view expected);
-  /// Next word if there is one on this line.
+  /// Returns the next word on this line; nothing if there is none.
   std::optional<std::string_view> word_on_line();
-  /// The rest of the current line, without its end; moves to the next line.
+  /// Returns the rest of the current line without its end, and moves to the next line.
   std::string_view line();
-  /// Next word as a finite number. @throws DataError naming the line and `what` otherwise.
+  /// Returns the next word as a finite number. @throws DataError naming the line and `what` otherwise.
   double number(std::string_view what);
-  /// Next word as an integer in [low, high].
+  /// Returns the next word as an integer in [low, high]. @throws DataError otherwise.
   long long integer(std::string_view what, long long low, long long high);
-  /// Next word as a count that the rest of the file can hold (each item needs at least one byte).
+  /// Returns the next word as a count, at most the number of bytes left, since each item needs at least one byte.
+  /// @throws DataError otherwise.
   std::size_t count(std::string_view what);
-  /// Next word, which must be this one (letters may differ in case).
+  /// Reads the next word, which must be `keyword` in upper or lower case. @throws DataError otherwise.
   void require(std::string_view keyword);
-  /// The next `size` bytes, as they are. @throws DataError if fewer are left.
+  /// Returns the next `size` bytes unchanged. @throws DataError if fewer are left.
   std::string_view bytes(std::size_t size, std::string_view what);
 
   [[nodiscard]] std::size_t position() const { return at_; }
@@ -53,10 +53,10 @@ class TextCursor {
   std::string_view text_;
   char comment_;
   std::size_t at_ = 0;
-  std::size_t word_at_ = 0;  ///< where the last word began: the place that `fail` names
+  std::size_t word_at_ = 0;  ///< start of the last word; `fail` names its line
 };
 
-/// Three finite coordinates.
+/// Reads three finite coordinates.
 Vec3 read_point(TextCursor& cursor, std::string_view what);
 
 }  // namespace incise::io_detail

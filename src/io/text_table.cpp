@@ -13,7 +13,7 @@
 namespace incise {
 namespace {
 
-/// The cells of one row.
+/// Splits one row into cells.
 std::vector<std::string> cells_of(std::string_view row, const std::filesystem::path& path, std::size_t line) {
   std::vector<std::string> cells;
   std::size_t at = 0;
@@ -44,7 +44,7 @@ std::vector<std::string> cells_of(std::string_view row, const std::filesystem::p
   }
 }
 
-/// Cells end up in tables, JSON and messages, which hold text alone.
+/// Refuses control characters and invalid UTF-8, because cells end up in tables, JSON and messages.
 void require_text(std::string_view row, const std::filesystem::path& path, std::size_t line) {
   const auto is_control = [](char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == '\x7f'; };
   const auto bad = std::find_if(row.begin(), row.end(), is_control);

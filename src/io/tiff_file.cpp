@@ -19,10 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostTiffBits = 8.0 * 2800.0;  // for a byte of the file: LZW has 4096 symbols in codes of 12 bits
+constexpr double kMostTiffBits = 8.0 * 2800.0;  // per byte of the file: LZW has 4096 symbols in codes of 12 bits
 constexpr tmsize_t kMostTiffAtOnce = tmsize_t{1} << 30;
 
-/// What libtiff reads from, and the first thing it complains of.
+/// Source of libtiff's reading, and its first error message.
 struct TiffSource {
   std::string_view bytes;
   std::uint64_t at = 0;
@@ -62,7 +62,7 @@ toff_t size_of_tiff(thandle_t handle) {
 
 int map_tiff(thandle_t handle, void** bytes, toff_t* size) {
   const std::string_view all = tiff_source_of(handle).bytes;
-  *bytes = const_cast<char*>(all.data());  // libtiff has no read-only kind; opened for reading, it writes nothing
+  *bytes = const_cast<char*>(all.data());  // libtiff's type is not const; opened for reading, it writes nothing
   *size = all.size();
   return 1;
 }
@@ -75,7 +75,8 @@ int keep_tiff_words(TIFF* /*tiff*/, void* source, const char* /*module*/, const 
   return 1;
 }
 
-/// A warning of a JPEG within is damage that would be painted over; others are about odd entries.
+/// Keeps a warning as an error if it is about embedded JPEG pixels, whose damage libtiff would hide; other warnings are
+/// about odd entries.
 int warn_tiff(TIFF* tiff, void* source, const char* module, const char* format, va_list values) {
   const bool is_damage =
       static_cast<TiffSource*>(source)->reads_pixels && module != nullptr && std::string_view(module) == "JPEGLib";
@@ -103,7 +104,7 @@ Value tiff_field(TIFF* tiff, ttag_t tag) {
   return value;
 }
 
-/// One channel of 16 bits.
+/// Reads the pixels of a picture with one channel of 16 bits. @returns whether that succeeded.
 bool reads_tiff_counts(TIFF* tiff, StoredPixels& pixels) {
   const auto width = static_cast<std::size_t>(pixels.width), height = static_cast<std::size_t>(pixels.height);
   pixels.bytes.resize(2 * width * height);
@@ -130,8 +131,8 @@ bool reads_tiff_counts(TIFF* tiff, StoredPixels& pixels) {
   return true;
 }
 
-/// Through libtiff's own way from any kind of colour, whose transparent pixels are darkened already. Not turned: it
-/// asks for the orientation that the file has.
+/// Reads pixels of any colour type as RGB through libtiff's conversion, whose colours are already multiplied by alpha.
+/// Does not turn the picture: it requests the orientation of the file. @returns whether that succeeded.
 bool reads_tiff_colors(TIFF* tiff, StoredPixels& pixels, int orientation) {
   const std::size_t count = static_cast<std::size_t>(pixels.width) * static_cast<std::size_t>(pixels.height);
   std::vector<std::uint32_t> abgr(count);
@@ -149,7 +150,7 @@ bool reads_tiff_colors(TIFF* tiff, StoredPixels& pixels, int orientation) {
   return true;
 }
 
-/// Tiles may be larger than their picture, and share their bytes.
+/// Refuses tiles that the file cannot hold: tiles may be larger than their picture, and may share bytes.
 void require_possible_tiles(TIFF* tiff, const fs::path& name, std::size_t bytes) {
   if (TIFFIsTiled(tiff) == 0) return;
   const double tiles = TIFFNumberOfTiles(tiff), size = static_cast<double>(TIFFTileSize(tiff));

@@ -36,7 +36,7 @@ void require_similarity(const Visitor& v, const Field& field, const Mat4& T) {
     v.refuse(field, fmt::format("a rotation part with determinant {:.6g}", determinant),
              "a positive determinant (no mirror image)");
   }
-  // A tissue that was found in space is turned, moved and perhaps scaled; shear and unequal axes would bend the path.
+  // Registered tissue is turned, moved and perhaps scaled; shear or unequal axes would distort the path.
   constexpr double kSimilar = 1e-3;  // relative: numbers may have been shortened
   const double skew = skew_of(T.topLeftCorner<3, 3>() / std::cbrt(determinant));
   if (!(skew <= kSimilar)) {

@@ -34,7 +34,7 @@ T number_at(const std::array<char, 540>& header, std::size_t position, bool is_s
   return std::bit_cast<T>(bytes);
 }
 
-/// Where the voxels begin, from the header of version 1 (348 bytes) or 2 (540 bytes) in either byte order.
+/// Returns the offset of the voxels, from a header of version 1 (348 bytes) or 2 (540 bytes) in either byte order.
 std::size_t nifti_voxel_offset(const fs::path& path, const std::array<char, 540>& header) {
   for (const bool is_swapped : {false, true}) {
     const auto size = number_at<std::int32_t>(header, 0, is_swapped);
@@ -46,7 +46,7 @@ std::size_t nifti_voxel_offset(const fs::path& path, const std::array<char, 540>
   throw DataError(path, "header", "no place of the voxels", "a NIfTI file with header and voxels in one");
 }
 
-/// Unpacks the whole file, which may be packed or not, and counts.
+/// Counts the bytes of the whole file, unpacked if it is packed.
 void require_complete_nifti(const fs::path& path, std::size_t voxel_bytes) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
   if (!file) throw DataError(path, "", "a file that does not open", "a readable file");
@@ -96,7 +96,7 @@ MetaHeader read_meta_header(const fs::path& path) {
   return header;
 }
 
-/// How many bytes a packed stream unpacks to; less than there should be if it ends early or is damaged.
+/// Returns how many bytes a packed stream unpacks to; too few if it ends early or is damaged.
 std::size_t unpacked_size(std::ifstream& stream) {
   z_stream packed{};
   constexpr int zlib_or_gzip = 32 + MAX_WBITS;
@@ -114,7 +114,7 @@ std::size_t unpacked_size(std::ifstream& stream) {
       state = inflate(&packed, Z_NO_FLUSH);
       total += out.size() - packed.avail_out;
     } while (state == Z_OK && packed.avail_out == 0);
-    if (state == Z_BUF_ERROR) state = Z_OK;  // it only wants more input
+    if (state == Z_BUF_ERROR) state = Z_OK;  // it only needs more input
   }
   inflateEnd(&packed);
   return state == Z_STREAM_END || total == 0 ? total : total - 1;  // the closing checksum is missing or wrong

@@ -12,7 +12,7 @@
 
 namespace incise {
 
-/// What one DICOM file says about its slice, checked for being a plain CT slice.
+/// The header of one DICOM file, checked to be of a plain CT slice.
 struct DicomHeader {
   std::filesystem::path file;
   std::string series_uid;
@@ -23,10 +23,10 @@ struct DicomHeader {
   double slope = 1;
   double intercept = 0;  ///< HU
   std::string rescale_type;
-  std::optional<std::pair<int, int>> padding;  ///< stored values from … to that stand for "no picture here"
+  std::optional<std::pair<int, int>> padding;  ///< first and last stored value that mark pixels outside the picture
 };
 
-/// The series that a file belongs to, read without judging what is in it.
+/// The series that a file belongs to, read without checking the content.
 struct DicomIdentity {
   std::filesystem::path file;
   std::string series_uid;
@@ -35,10 +35,11 @@ struct DicomIdentity {
   bool has_picture = false;
 };
 
-/// @throws DataError if the file cannot be parsed.
+/// Reads which series a file belongs to. @throws DataError if it cannot be parsed, or is a CT slice without pixels.
 [[nodiscard]] DicomIdentity read_dicom_identity(const std::filesystem::path& file);
 
-/// @throws DataError unless this is one gray CT slice with position, orientation, spacing and rescale.
+/// Reads the header of one slice.
+/// @throws DataError unless it is a gray CT slice with position, orientation, spacing and rescale.
 [[nodiscard]] DicomHeader read_dicom_header(const std::filesystem::path& file);
 
 /// Reads the series of a folder. @throws as read_ct

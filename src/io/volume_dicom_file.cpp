@@ -71,7 +71,7 @@ void DicomFile::stop_at(std::size_t position, const std::string& found) const {
                   "Is the file cut short?");
 }
 
-/// A little-endian number.
+/// Reads a little-endian number of `size` bytes.
 std::uint32_t DicomFile::number_at(std::size_t position, std::size_t size) const {
   if (position + size > bytes_.size()) stop_at(bytes_.size(), "the end of the file inside an element");
   std::uint32_t number = 0;
@@ -88,7 +88,7 @@ DicomFile::Element DicomFile::read_element(std::size_t position, bool is_explici
     length = number_at(position + 4, 4);
     element.begin = position + 8;
   } else {
-    number_at(position + 4, 2);  // that two bytes are there
+    number_at(position + 4, 2);  // checks that the two bytes exist
     const std::string_view vr = std::string_view(bytes_).substr(position + 4, 2);
     if (!is_vr(vr)) stop_at(position + 4, "bytes that are no value representation");
     const bool is_long = has_long_length(vr);
@@ -105,14 +105,14 @@ DicomFile::Element DicomFile::read_element(std::size_t position, bool is_explici
   return element;
 }
 
-/// Where the element's value ends, delimiters included.
+/// Returns the position after the element's value, delimiters included.
 std::size_t DicomFile::end_of(const Element& element, bool is_explicit, int depth) const {
   if (!element.is_undefined_length) return element.begin + element.length;
   // An unknown element of undefined length is a sequence in implicit encoding, whatever surrounds it (PS3.5, 6.2.2).
   return skip_items(element.begin, is_explicit && !element.is_unknown, depth + 1);
 }
 
-/// Follows the items of a sequence, or the fragments of encapsulated pixels, to behind their closing delimiter.
+/// Returns the position after the items of a sequence, or the fragments of encapsulated pixels, and their delimiter.
 std::size_t DicomFile::skip_items(std::size_t position, bool is_explicit, int depth) const {
   if (depth > kDeepestNesting) stop_at(position, fmt::format("more than {} nested sequences", kDeepestNesting));
   while (true) {

@@ -13,24 +13,25 @@ namespace incise {
 using DicomTag = std::uint32_t;
 inline constexpr DicomTag kPixelDataTag = 0x7fe00010;
 
-/// One DICOM file whose structure was followed from the first byte to the end of its pixels, so that what is cut short
-/// is found here. GDCM, which decodes the pixels later, stops the whole process on some damaged files, and takes others
-/// for whole. Little-endian encodings, implicit or explicit, native or encapsulated; part 10 files with their "DICM"
-/// mark. Source: DICOM PS3.5, 7.1 (elements), 7.5 (sequences), A.4 (encapsulated pixels); PS3.10, 7.1 (file header).
+/// One DICOM file, whose structure is followed from the first byte to the end of its pixels, to find truncated files
+/// here. GDCM, which decodes the pixels later, stops the whole process on some damaged files and accepts others.
+/// Supports little-endian encodings, implicit or explicit, native or encapsulated, in part 10 files with a "DICM" mark.
+/// Source: DICOM PS3.5, 7.1 (elements), 7.5 (sequences), A.4 (encapsulated pixels); PS3.10, 7.1 (file header).
 class DicomFile {
  public:
-  /// @throws DataError if the file cannot be read, is no such file, or ends too early.
+  /// @throws DataError if the file cannot be read, is no DICOM file, has an unsupported encoding, or ends too early.
   explicit DicomFile(std::filesystem::path path);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// The bytes of an element outside all sequences; nothing if it is absent or empty. Valid as long as this object.
+  /// Returns the bytes of an element outside all sequences, valid as long as this object; nothing if it is absent or
+  /// empty.
   [[nodiscard]] std::optional<std::string_view> value(DicomTag tag) const;
   [[nodiscard]] bool has_pixels() const { return pixels_.has_value(); }
-  /// Bytes of native pixels; nothing if they are encapsulated, which means compressed.
+  /// Returns the number of bytes of native pixels; nothing if they are encapsulated, that is compressed, or absent.
   [[nodiscard]] std::optional<std::size_t> native_pixel_bytes() const;
-  /// UID of the encoding.
+  /// Returns the UID of the encoding.
   [[nodiscard]] const std::string& transfer_syntax() const { return transfer_syntax_; }
-  /// The file up to the last byte of its pixels, without what may trail behind.
+  /// Returns the file up to the last byte of its pixels, without any bytes after them.
   [[nodiscard]] std::string up_to_pixels() const { return bytes_.substr(0, end_); }
 
  private:

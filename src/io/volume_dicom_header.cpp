@@ -41,7 +41,7 @@ constexpr Field kRescaleType{0x00281054, "RescaleType"};
 
 const std::string kCtImageStorage = "1.2.840.10008.5.1.4.1.1.2";
 
-/// Text without the padding that DICOM adds; empty if absent.
+/// Returns an element's text without the padding that DICOM adds; empty if absent.
 std::string text_of(const DicomFile& file, const Field& field) {
   std::string_view text = file.value(field.tag).value_or("");
   const auto is_padding = [](char c) { return c == ' ' || c == '\0'; };
@@ -50,7 +50,7 @@ std::string text_of(const DicomFile& file, const Field& field) {
   return std::string(text);
 }
 
-/// Exactly `count` decimal numbers, separated by backslashes.
+/// Reads exactly `count` decimal numbers, separated by backslashes.
 std::vector<double> numbers_of(const DicomFile& file, const Field& field, std::size_t count) {
   const std::string text = text_of(file, field);
   const std::string expected = fmt::format("{} decimal number{}", count, count == 1 ? "" : "s");
@@ -107,7 +107,7 @@ SliceFrame frame_of(const DicomFile& file) {
   const auto axes = numbers_of(file, kOrientation, 6);
   const Vec3 row(axes[0], axes[1], axes[2]);
   const Vec3 column(axes[3], axes[4], axes[5]);
-  constexpr double tolerance = 1e-3;  // six written digits are the rule, four occur
+  constexpr double tolerance = 1e-3;  // most files have six digits, some four
   if (std::abs(row.norm() - 1) > tolerance || std::abs(column.norm() - 1) > tolerance ||
       std::abs(row.dot(column)) > tolerance) {
     throw DataError(file.path(), kOrientation.name, text_of(file, kOrientation), "two unit vectors at right angles");
@@ -118,7 +118,7 @@ SliceFrame frame_of(const DicomFile& file) {
 }
 
 std::optional<std::pair<int, int>> padding_of(const DicomFile& file, bool is_signed) {
-  // Writers disagree whether this field is signed; its bits mean what the pixels' bits mean.
+  // Writers disagree whether this field is signed; its bits have the meaning of the pixels' bits.
   const auto meaning = [is_signed](std::uint16_t word) {
     return is_signed ? int{static_cast<std::int16_t>(word)} : int{word};
   };
@@ -134,7 +134,7 @@ std::optional<std::pair<int, int>> padding_of(const DicomFile& file, bool is_sig
 DicomIdentity read_dicom_identity(const fs::path& path) {
   const DicomFile file(path);
   DicomIdentity identity{path, text_of(file, kSeriesUid), text_of(file, kSeriesDescription), text_of(file, kModality)};
-  // A directory file, a report or a structure set has no pixels; a slice that lost them still says what it was.
+  // A directory file, a report or a structure set has no pixels; a slice that lost its pixels still has Rows.
   identity.has_picture = word_of(file, kRows).has_value() || file.has_pixels();
   if (!file.has_pixels() && (identity.has_picture || text_of(file, kStorageClass) == kCtImageStorage)) {
     throw DataError(path, "PixelData", "nothing", "a picture", "Is the file cut short?");

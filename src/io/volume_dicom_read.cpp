@@ -27,7 +27,7 @@ std::string name_of(const fs::path& file) {
 
 struct FolderContent {
   std::map<std::string, std::vector<DicomIdentity>> series;  ///< pictures, by SeriesInstanceUID
-  int other_files = 0;                                       ///< no DICOM, or DICOM without a picture
+  int other_files = 0;                                       ///< not DICOM, or DICOM without a picture
 };
 
 FolderContent scan_folder(const fs::path& folder, Monitor& monitor) {
@@ -79,7 +79,7 @@ const std::vector<DicomIdentity>& choose_series(const fs::path& folder, const Fo
   return content.series.begin()->second;
 }
 
-/// Slices of one volume have one size, one pixel spacing and one orientation.
+/// Checks that two slices have the same size, pixel spacing and orientation.
 void require_same_frame(const DicomHeader& first, const DicomHeader& other) {
   const SliceFrame& a = first.frame;
   const SliceFrame& b = other.frame;
@@ -121,12 +121,12 @@ void require_whole_pixels(const DicomHeader& header, const DicomFile& file) {
   }
 }
 
-/// A slice's pixels as GDCM decodes them: sizes in bits, the sign, then the words.
+/// The format of a slice's pixels as GDCM decodes them; the pixels follow it in the answer of decode_pixels.
 struct DecodedPixels {
   std::uint16_t allocated_bits = 0, stored_bits = 0, high_bit = 0, is_signed = 0;
 };
 
-/// GDCM's part, in a process of its own. Empty: GDCM could not decode it.
+/// Decodes a slice with GDCM, in a child process. Empty: GDCM could not decode it.
 std::string decode_pixels(const DicomFile& file) {
   const QuietImageLibraries quiet;
   std::istringstream stream(file.up_to_pixels());
@@ -143,18 +143,18 @@ std::string decode_pixels(const DicomFile& file) {
     answer.resize(begin + picture.GetBufferLength());
     return picture.GetBuffer(answer.data() + begin) ? answer : std::string();
   } catch (const std::exception&) {
-    return {};  // told below, in our words
+    return {};  // stored_values reports it
   }
 }
 
-/// The stored values of one slice, before rescale; the bits above BitsStored do not count.
+/// Returns the stored values of one slice, before rescale, without the bits above BitsStored.
 std::vector<int> stored_values(const DicomHeader& header) {
   const DicomFile file(header.file);
   require_whole_pixels(header, file);
   const std::size_t pixels = static_cast<std::size_t>(header.frame.columns) * header.frame.rows;
   const io_detail::ChildLimits limits{(512ULL << 20) + 32 * pixels, 60};
   const std::string answer = io_detail::in_child_process(header.file, "DICOM", limits, [&] { return decode_pixels(file); });
-  // Native pixels under the name of a compressed encoding would be taken for what they are not.
+  // GDCM would misread native pixels that the file declares compressed.
   if (answer.size() < sizeof(DecodedPixels) || file.native_pixel_bytes().has_value() == is_compressed(file.transfer_syntax())) {
     throw DataError(header.file, "PixelData",
                     fmt::format("pixels that cannot be decoded, in transfer syntax {}", transfer_syntax_words(file)),
@@ -182,7 +182,7 @@ std::vector<int> stored_values(const DicomHeader& header) {
   return values;
 }
 
-/// Writes the slice's Hounsfield units to `out`. @returns how many pixels were padding.
+/// Writes the slice's Hounsfield units to `out`. @returns the number of padding pixels, which become air.
 std::size_t to_hounsfield(const DicomHeader& header, const std::vector<int>& stored, std::int16_t* out) {
   std::size_t padding = 0;
   for (std::size_t p = 0; p < stored.size(); ++p) {

@@ -27,8 +27,7 @@ using gdcm::VR;
 constexpr int kWrittenIntercept = -1024;  // HU of stored value 0
 const char* const kWrittenStorage = "1.2.840.10008.5.1.4.1.1.2";
 
-/// A unique identifier that follows from a text: "2.25." and 128 bits of its SHA-256, marked as a UUID made from a
-/// name.
+/// Returns a UID made from a text: "2.25." and 128 bits of its SHA-256, marked as a UUID made from a name.
 std::string uid_from(const std::string& text) {
   const std::string digits = sha256_of_text(text);
   std::array<unsigned, 16> bytes{};
@@ -55,7 +54,7 @@ std::string digest_of(const std::vector<std::int16_t>& voxels) {
   return sha256_of_text({reinterpret_cast<const char*>(voxels.data()), voxels.size() * sizeof(std::int16_t)});
 }
 
-/// A decimal string of DICOM: as many digits as its 16 characters can hold.
+/// Returns a decimal string of DICOM, with as many digits as fit into its 16 characters.
 std::string decimal_string(double value) {
   for (int digits = 15; digits > 0; --digits) {
     const std::string text = fmt::format("{:.{}g}", value, digits);
@@ -95,7 +94,7 @@ void require_plain_text(const std::string& text) {
                  fmt::format("expected a DICOM text of at most 64 bytes without backslash, found '{}'", text));
 }
 
-/// What is the same in every file of the series.
+/// The data that every file of the series shares.
 struct Series {
   std::string study_uid;
   std::string series_uid;
@@ -143,7 +142,7 @@ void describe_study(gdcm::DataSet& data, const Series& series, const DicomTags& 
   set_text(data, Tag(0x0020, 0x0010), VR::SH, "1");
   set_text(data, Tag(0x0020, 0x0011), VR::IS, "1");
   set_text(data, Tag(0x0020, 0x0052), VR::UI, series.frame_uid);
-  // Required to be there, allowed to be empty: dates, times, names and doses that a virtual scan does not have.
+  // These elements must exist but may be empty: dates, times, names and settings that a virtual scan does not have.
   const auto leave_empty = [&data](std::uint16_t group,
                                    std::initializer_list<std::pair<std::uint16_t, VR::VRType>> elements) {
     for (const auto& [element, vr] : elements) set_text(data, Tag(group, element), vr, "");
@@ -210,7 +209,7 @@ void write_dicom_series(const fs::path& folder, const CtVolume& volume, const Di
     set_pixels(data, volume, k);
     writer.GetFile().GetHeader().SetDataSetTransferSyntax(gdcm::TransferSyntax::ExplicitVRLittleEndian);
     const std::string name = fmt::format("IM{:04}.dcm", k + 1);
-    std::ostringstream bytes;  // in memory: the library ends the program where a disk is full
+    std::ostringstream bytes;  // in memory, because the library ends the program if the disk is full
     writer.SetStream(bytes);
     if (!writer.Write()) throw DataError(folder / name, "", "a failed write", "a complete file");
     write_atomically(target.path() / name, bytes.view());

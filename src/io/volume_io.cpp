@@ -23,8 +23,8 @@ namespace fs = std::filesystem;
 
 enum class Fractions { Round, Refuse };
 
-/// Raw values of type `In` as `Out`, exactly or (fractions of floats, if allowed) rounded. @returns whether any was
-/// rounded.
+/// Converts raw values from type `In` to `Out`, exactly; rounds fractions of floats if allowed.
+/// @returns whether any value was rounded.
 template <class In, class Out>
 bool convert_values(const fs::path& path, const RawImage& image, Fractions fractions, std::vector<Out>& out) {
   constexpr double lowest = std::numeric_limits<Out>::min();
@@ -85,7 +85,7 @@ void require_exists(const fs::path& path) {
   require_file_or_folder(path);
 }
 
-/// The format of a single file. @throws DataError for names that stand for none.
+/// Returns the format of a single file. @throws DataError if its name has no format of a volume.
 VolumeFormat format_of_file(const fs::path& path) {
   const auto format = format_of_name(path);
   if (format && *format != VolumeFormat::PictureStack) return *format;
@@ -125,7 +125,7 @@ VolumeFormat format_of_folder(const fs::path& folder) {
   throw DataError(folder, "", "a folder without DICOM files or PNG pictures", "the slices of a CT");
 }
 
-/// A setting that the data make pointless is a misunderstanding worth telling.
+/// Refuses settings that do not apply to the format: they show a misunderstanding.
 void refuse_foreign_settings(const fs::path& path, VolumeFormat format, const CtReadSettings& settings) {
   const auto refuse = [&](const char* field, const char* belongs) {
     throw CaseError(path.string(), field, "a value", fmt::format("none for {}", to_string(format)), belongs);
@@ -141,7 +141,7 @@ void refuse_foreign_settings(const fs::path& path, VolumeFormat format, const Ct
   }
 }
 
-/// Smoothing and meshing go by one length for all directions, which a needle of a voxel does not have.
+/// Refuses needle-shaped voxels: smoothing and meshing assume one length for all directions.
 void require_compact_voxels(const fs::path& path, const Vec3& spacing_mm) {
   if (spacing_mm.maxCoeff() <= kLongestVoxel * spacing_mm.minCoeff()) return;
   throw DataError(path, "spacing",

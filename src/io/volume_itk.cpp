@@ -58,7 +58,7 @@ itk::ImageIOBase::Pointer make_image_io(VolumeFormat format) {
   throw InvalidArgument("make_image_io: expected NRRD, NIfTI or MetaImage");
 }
 
-/// The sentence of an ITK exception that says what happened: ITK puts file, line and object address around it.
+/// Returns the message of an exception, without the file, line and object address that ITK adds.
 std::string essence(const std::exception& error) {
   std::string text = error.what();
   const auto* itk_error = dynamic_cast<const itk::ExceptionObject*>(&error);
@@ -104,7 +104,7 @@ std::optional<Component> component_of(itk::IOComponentEnum type) {
   }
 }
 
-/// The first lines of a file, up to a blank one: the text header of NRRD and MetaImage.
+/// Returns the text header of an NRRD or MetaImage file in lower case: its first lines up to a blank one or `last_key`.
 std::string text_header(const fs::path& path, const std::string& last_key) {
   std::ifstream stream(path, std::ios::binary);
   std::string header;
@@ -119,7 +119,7 @@ std::string text_header(const fs::path& path, const std::string& last_key) {
   return lower_case(header);
 }
 
-/// ITK takes 1 mm where a header states no spacing; that would be a silent guess of ours.
+/// Refuses a header without voxel spacing, for which ITK would silently assume 1 mm.
 void require_stated_geometry(const fs::path& path, VolumeFormat format, std::vector<std::string>& notices) {
   const auto says = [](const std::string& header, std::initializer_list<const char*> keys) {
     return std::any_of(keys.begin(), keys.end(), [&](const char* key) {
@@ -167,10 +167,10 @@ void require_gray_volume(const fs::path& path, const itk::ImageIOBase& io) {
   if (voxels > 4e9) throw DataError(path, "size", fmt::format("{:.2g} voxels", voxels), "at most 4e9 voxels");
 }
 
-constexpr std::uint64_t kLargestGain = 1100;               // of packed data: zlib's is 1032
-constexpr std::uint64_t kLibraryMemory = 1ULL << 30;       // that ITK may take beside the voxels
+constexpr std::uint64_t kLargestGain = 1100;               // of compression: zlib's is 1032
+constexpr std::uint64_t kLibraryMemory = 1ULL << 30;       // bytes that ITK may use beside the voxels
 
-/// Of a volume's file and all that its header names, bytes.
+/// Returns the total size of a volume's file and all files that its header names, bytes.
 std::uint64_t total_size(const fs::path& path) {
   std::uint64_t total = 0;
   for (const fs::path& file : input_files(path)) {
@@ -186,7 +186,7 @@ std::uint64_t total_size(const fs::path& path) {
   return total;
 }
 
-/// No packing makes this much of so few bytes.
+/// Refuses a header that claims more voxels than compression can make from the file's bytes.
 void require_possible_size(const fs::path& path, std::uint64_t voxel_bytes) {
   const std::uint64_t size = total_size(path);
   if (voxel_bytes <= kLargestGain * size) return;
@@ -194,7 +194,7 @@ void require_possible_size(const fs::path& path, std::uint64_t voxel_bytes) {
                   "all voxels of the volume", "Is the file cut short?");
 }
 
-/// ITK goes through as many axes as the header states, however many, before it looks at anything else.
+/// Checks the number of axes before ITK reads the header: ITK loops over as many axes as it states, however many.
 void require_plain_meta_header(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string line;
@@ -215,7 +215,7 @@ void require_plain_meta_header(const fs::path& path) {
   throw DataError(path, "header", "no ElementDataFile in the first lines", "a MetaImage header");
 }
 
-/// A NRRD file whose header does not end in a blank line holds no data; only a detached header may end with its file.
+/// Refuses an NRRD file without a blank line after its header, which holds no voxels, unless the header is detached.
 void require_ended_nrrd_header(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(64 << 10, '\0');
@@ -332,7 +332,7 @@ T unpack(const std::string& bytes, std::size_t& at) {
   return value;
 }
 
-/// An image as bytes, from one process to another of the same program.
+/// Packs an image into bytes, to send it from one process to another of the same program.
 std::string packed(const RawImage& image) {
   std::string bytes;
   for (const int size : image.grid.size) pack(size, bytes);

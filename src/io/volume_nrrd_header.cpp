@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t kAxes = 3;
 constexpr std::size_t kLongestShown = 60;
 
-/// What follows the colon; `key:=value` is a remark of the user's, not a field.
+/// Returns the value of a field "key: value"; `key:=value` is a user's remark, not a field.
 std::optional<std::string> field(const std::string& header, std::string_view key) {
   for (std::size_t begin = 0; begin < header.size();) {
     const std::size_t end = std::min(header.find('\n', begin), header.size());
@@ -43,7 +43,7 @@ std::vector<std::string> split(std::string_view text, std::string_view separator
   return parts;
 }
 
-/// The length of the vector "(x,y,z)"; NaN if the text is not a vector.
+/// Returns the length of the vector in "x,y,z"; NaN if the text is not a vector.
 double length_of(std::string_view vector) {
   double squares = 0.0;
   for (const std::string& part : split(vector, ", \t")) {
@@ -54,7 +54,7 @@ double length_of(std::string_view vector) {
   return std::sqrt(squares);
 }
 
-/// Of every axis that has one, in order.
+/// Returns the length of every axis that has a vector "(x,y,z)", in order.
 std::vector<double> lengths_of_directions(std::string_view text) {
   std::vector<double> lengths;
   for (std::size_t open = 0; (open = text.find('(', open)) != std::string_view::npos;) {
@@ -86,7 +86,7 @@ void require_lengths(const std::filesystem::path& path, const char* key, const s
   }
 }
 
-/// Axes without a unit are mm, as where no units are stated.
+/// Refuses units other than mm. An axis without a unit is taken as mm.
 void require_millimetres(const std::filesystem::path& path, const char* key, const std::string& header) {
   constexpr std::array<std::string_view, 5> kMillimetres{"mm", "millimeter", "millimeters", "millimetre",
                                                          "millimetres"};

@@ -43,7 +43,8 @@ Picture parse_name(const fs::path& file) {
   return picture;
 }
 
-/// In the order of their numbers; refuses mixed stacks, doubles and gaps in the numbering.
+/// Returns the pictures of a folder in the order of their numbers. Refuses mixed stacks, and duplicates or gaps in the
+/// numbering.
 std::vector<Picture> sorted_pictures(const fs::path& folder, int& other_files) {
   std::vector<Picture> pictures;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -95,7 +96,7 @@ void require_settings(const fs::path& folder, const CtReadSettings& settings) {
   }
 }
 
-/// What each gray level is in HU, computed once for all pixels of all slices.
+/// Table of HU by gray level, computed once for all slices.
 class HuTable {
  public:
   explicit HuTable(const GrayToHu& hu) : hu_(hu), values_(std::size_t{1} << 16) {
@@ -130,7 +131,7 @@ class HuTable {
   std::vector<std::int32_t> values_;
 };
 
-/// Reads the slices into a volume whose grid has their size, several at a time. @param first  already read
+/// Reads the slices, several at a time, into a volume whose grid has their size. @param first  slice 0, already read
 void read_slices(const std::vector<Picture>& pictures, const HuTable& table, const RawImage& first, CtVolume& volume,
                  Monitor& monitor) {
   const VolumeGrid& grid = volume.grid;
@@ -145,7 +146,7 @@ void read_slices(const std::vector<Picture>& pictures, const HuTable& table, con
     table.convert(pictures[k].file, image, volume.voxels.data() + k * pixels);
   };
   Workers workers(0);
-  const std::size_t block = 4 * static_cast<std::size_t>(workers.thread_count());  // between two looks at the monitor
+  const std::size_t block = 4 * static_cast<std::size_t>(workers.thread_count());  // slices between monitor checks
   for (std::size_t begin = 0; begin < pictures.size(); begin += block) {
     throw_if_cancelled(monitor, "reading CT");
     monitor.progress("reading CT", static_cast<double>(begin) / static_cast<double>(pictures.size()));

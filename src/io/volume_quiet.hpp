@@ -2,10 +2,9 @@
 
 namespace incise {
 
-/// While it lives, nothing that is printed to standard error is seen. ITK, GDCM, MetaIO and the codecs under them print
-/// warnings there, each in its own way and some without a switch; the library speaks through exceptions and the monitor
-/// instead. Keep it around calls of these libraries only: it acts on the whole process, progress bars and other threads
-/// included.
+/// Discards all output to standard error while it exists. ITK, GDCM, MetaIO and their codecs print warnings there, some
+/// without a switch; incise reports through exceptions and the monitor instead. Use it only around calls of these
+/// libraries, because it affects the whole process, including progress bars and other threads.
 class QuietImageLibraries {
  public:
   QuietImageLibraries();
@@ -14,7 +13,7 @@ class QuietImageLibraries {
   QuietImageLibraries& operator=(const QuietImageLibraries&) = delete;
 
  private:
-  int standard_error_;  ///< a copy of its descriptor, or -1 if it is closed anyway
+  int standard_error_;  ///< copy of the descriptor of standard error; -1 if that is closed
 };
 
 }  // namespace incise

@@ -19,7 +19,7 @@ constexpr double kSamePlaceMm = 0.01;     // scanners write positions to 0.01 mm
 constexpr double kSidewaysMm = 0.1;       // a fifth of a head CT's pixel
 constexpr double kUnevenMm = 0.05;        // rounding of written positions …
 constexpr double kUnevenFraction = 0.02;  // … or a fiftieth of a step, whichever is larger
-constexpr double kHoleFraction = 0.25;    // more long steps than this are a plan with two spacings, not holes
+constexpr double kHoleFraction = 0.25;    // more long steps than this mean a protocol with two spacings, not holes
 constexpr double kMaxVoxels = 2e9;
 
 std::vector<double> steps_of(const std::vector<double>& heights) {
@@ -38,7 +38,7 @@ double uneven_tolerance(double step_mm) {
   return std::max(kUnevenMm, kUnevenFraction * step_mm);
 }
 
-/// Holes: few steps that are whole multiples of the common step, all others being that step.
+/// Finds holes: a few steps that are whole multiples of the common step, if all other steps equal it.
 void find_holes(const std::vector<SlicePlace>& places, StackLayout& layout) {
   const std::vector<double> steps = steps_of(layout.height_mm);
   const double common = layout.common_step_mm;
@@ -61,7 +61,7 @@ void find_holes(const std::vector<SlicePlace>& places, StackLayout& layout) {
   layout.first_hole = first;
 }
 
-/// A tilt moves every slice in proportion to its height; anything else is no tilt.
+/// Describes a sideways shift. It is a tilt if every slice moves in proportion to its height.
 std::string describe_sideways(const StackLayout& layout) {
   double farthest = 0;
   double off_the_line = 0;
@@ -85,7 +85,7 @@ std::string irregularity_words(const StackLayout& layout) {
   return words + fmt::format("uneven slice steps of {:.4g} to {:.4g} mm", layout.min_step_mm, layout.max_step_mm);
 }
 
-/// The value between four pixels of a slice; NaN outside the slice.
+/// Interpolates between four pixels of a slice; NaN outside the slice.
 float sample(const SliceFrame& frame, const std::int16_t* hu, double u, double v) {
   if (u < 0 || v < 0 || u > frame.columns - 1 || v > frame.rows - 1) return std::numeric_limits<float>::quiet_NaN();
   const int i = std::max(0, std::min(static_cast<int>(u), frame.columns - 2));
@@ -100,7 +100,7 @@ float sample(const SliceFrame& frame, const std::int16_t* hu, double u, double v
                             term(a * b, 1, 1));
 }
 
-/// One slice on the output's columns and rows, NaN where it does not reach.
+/// Interpolates one slice at the output's columns and rows; NaN where it does not reach.
 /// @param shift  output pixel (i, j) is the slice's pixel (i, j) - shift
 std::vector<float> lay_slice(const SliceFrame& frame, const std::int16_t* hu, const Vec2& shift, int columns,
                              int rows) {
@@ -126,7 +126,7 @@ TargetGrid plan_target(const fs::path& path, const SliceFrame& frame, const Stac
   for (const Vec2& sideways : layout.sideways_mm) {
     Vec2 shift = layout.is_sideways ? Vec2(sideways.cwiseQuotient(pixel_mm)) : Vec2(0, 0);
     for (double& pixels : shift) {
-      // A shift by whole pixels, but for rounding, needs no interpolation and must not lose the last row.
+      // A shift by whole pixels, up to rounding, needs no interpolation and must not lose the last row.
       constexpr double rounding = 1e-4;
       if (std::abs(pixels - std::round(pixels)) < rounding) pixels = std::round(pixels);
     }
@@ -157,7 +157,7 @@ TargetGrid plan_target(const fs::path& path, const SliceFrame& frame, const Stac
   return target;
 }
 
-/// Linear in all three directions between the pixels that surround a point at its place in the patient.
+/// Interpolates every voxel linearly in all three directions between the pixels around its position in the patient.
 CtVolume resample(const fs::path& path, const SliceFrame& frame, const StackLayout& layout,
                   const std::vector<std::int16_t>& hu, Monitor& monitor) {
   const TargetGrid target = plan_target(path, frame, layout);

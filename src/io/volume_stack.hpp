@@ -1,12 +1,12 @@
 #pragma once
 
-// What a scan may measure: from a micro-CT's voxel to a slice farther from the next than any scanner moves its table, and places that a
-// scanner's own frame can have.
+// Limits of a scan: from a micro-CT's voxel to more than any scanner's slice spacing, and positions within any
+// scanner's own frame.
 namespace incise {
 inline constexpr double kFinestVoxelMm = 1e-4;
 inline constexpr double kCoarsestVoxelMm = 100.0;
 inline constexpr double kFarthestPlaceOfScanMm = 1e5;
-inline constexpr double kLongestVoxel = 50.0;  // longest side over shortest: a slice 10 mm thick of pixels of 0.2 mm
+inline constexpr double kLongestVoxel = 50.0;  // longest side over shortest: a 10 mm slice with pixels of 0.2 mm
 }  // namespace incise
 
 #include <incise/core/monitor.hpp>
@@ -19,26 +19,26 @@ inline constexpr double kLongestVoxel = 50.0;  // longest side over shortest: a 
 
 namespace incise {
 
-/// What all slices of a series share.
+/// The size, pixel spacing and axes that all slices of a series share.
 struct SliceFrame {
   int columns = 0;
   int rows = 0;
   double column_spacing_mm = 0;      ///< between neighbouring columns, along `row_axis`
   double row_spacing_mm = 0;         ///< between neighbouring rows, along `column_axis`
-  Vec3 row_axis = Vec3::UnitX();     ///< unit; the way the column number grows
-  Vec3 column_axis = Vec3::UnitY();  ///< unit; the way the row number grows
+  Vec3 row_axis = Vec3::UnitX();     ///< unit; direction in which the column number grows
+  Vec3 column_axis = Vec3::UnitY();  ///< unit; direction in which the row number grows
   [[nodiscard]] Vec3 normal() const { return row_axis.cross(column_axis); }
 };
 
-/// Where one slice lies.
+/// Position of one slice.
 struct SlicePlace {
   std::string name;                 ///< for messages: the file's name
   Vec3 position_mm = Vec3::Zero();  ///< centre of its first pixel, LPS
 };
 
-/// How a series stacks up, slices in order along the normal. All distances mm, relative to the first slice.
+/// Arrangement of the slices of a series, in order along the normal. Distances in mm, relative to the first slice.
 struct StackLayout {
-  std::vector<int> order;                 ///< order[k] = which of the given slices is the k-th
+  std::vector<int> order;                 ///< order[k] = index of the k-th slice among those given
   Vec3 first_position_mm = Vec3::Zero();  ///< centre of the first slice's first pixel, LPS
   std::vector<double> height_mm;          ///< along the normal; strictly increasing from 0
   std::vector<Vec2> sideways_mm;          ///< along row_axis and column_axis
@@ -46,29 +46,29 @@ struct StackLayout {
   double min_step_mm = 0;
   double max_step_mm = 0;
   double common_step_mm = 0;   ///< median step
-  bool is_sideways = false;    ///< some slice is off the first one's normal by more than the tolerance
-  std::string sideways_words;  ///< "a gantry tilt of 18.5 deg", or what else it is that moves the slices sideways
-  bool is_uneven = false;      ///< some slice is off its even place by more than the tolerance
+  bool is_sideways = false;    ///< some slice is off the normal through the first by more than the tolerance
+  std::string sideways_words;  ///< "a gantry tilt of 18.5 deg", or another sideways shift, in words
+  bool is_uneven = false;      ///< some slice is off its evenly spaced position by more than the tolerance
   int missing_slices = 0;      ///< holes in an otherwise regular series
   std::string first_hole;      ///< "between 'a' and 'b', 6 mm apart"
 };
 
-/// Sorts the slices and judges their regularity by the tolerances that read_ct states.
-/// @throws DataError for a single slice or two slices at one place.
+/// Sorts the slices and judges their regularity by the tolerances of read_ct.
+/// @throws DataError for a single slice, or for two slices at one position along the normal.
 [[nodiscard]] StackLayout lay_out_stack(const std::filesystem::path& path, const SliceFrame& frame,
                                         const std::vector<SlicePlace>& places);
 
-/// Says what is irregular, or throws DataError if the settings refuse it. Call before the pixels are read.
+/// Refuses a stack with irregularities that the settings do not allow. Call before reading pixels. @throws DataError
 void judge_stack(const std::filesystem::path& path, const StackLayout& layout, const CtReadSettings& settings);
 
-/// The volume of slices given in the order of the layout: as they are if regular, otherwise interpolated linearly.
-/// @param hu  columns x rows x slices, columns fastest.  @returns the volume; fills in diagnostics and tells the
-/// monitor.
+/// Returns the volume of the slices: unchanged if they are regular, otherwise interpolated linearly. Fills in
+/// diagnostics, and notifies the monitor of resampling.
+/// @param hu  HU, columns x rows x slices, columns fastest, slices in the order of the layout
 [[nodiscard]] CtVolume assemble_stack(const std::filesystem::path& path, const SliceFrame& frame,
                                       const StackLayout& layout, std::vector<std::int16_t> hu,
                                       CtReadDiagnostics& diagnostics, Monitor& monitor);
 
-/// Tells a notice to the monitor and keeps it.
+/// Sends a notice to the monitor and keeps it in the diagnostics.
 void notify(CtReadDiagnostics& diagnostics, Monitor& monitor, std::string notice);
 
 }  // namespace incise

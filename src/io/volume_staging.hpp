@@ -9,8 +9,8 @@
 
 namespace incise {
 
-/// A hidden folder beside the target: files get their final names in it (a .mhd names its voxel file) and then move out
-/// together.
+/// A hidden folder beside the target. Files are written there under their final names, because a .mhd names its voxel
+/// file, and then move out together.
 class StagingFolder {
  public:
   explicit StagingFolder(const std::filesystem::path& target) : target_(target) {
@@ -35,7 +35,7 @@ class StagingFolder {
 
   [[nodiscard]] std::filesystem::path file() const { return folder_ / target_.filename(); }
 
-  /// Voxel files first, so that a header never names voxels that are not there.
+  /// Moves the files to their final place, voxels first, so that a header never names missing voxels.
   void move_out() const {
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
       if (entry.path() != file()) move_one(entry.path());

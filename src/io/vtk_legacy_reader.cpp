@@ -14,7 +14,7 @@
 namespace incise::io_detail {
 namespace {
 
-/// The legacy names of number types, as the XML format calls them; empty for anything else.
+/// Returns the XML format's name for a legacy number type; empty for any other word.
 std::string xml_type(std::string_view legacy) {
   const std::string type = lower_case(legacy);
   if (type == "double") return "Float64";
@@ -180,7 +180,7 @@ class LegacyReader {
       store(data_, name, type, components, numbers(items_ * static_cast<std::size_t>(components), type));
       return;
     }
-    if (section == "lookup_table") {  // colours of a scale: of no use here
+    if (section == "lookup_table") {  // colours of a scale, not needed
       const std::size_t entries = cursor_.count("table entries");
       numbers(4 * entries, "UInt8");
       return;
@@ -198,8 +198,8 @@ class LegacyReader {
     store(data_, name, type, components, numbers(items_ * static_cast<std::size_t>(components), type));
   }
 
-  /// @param data  where the arrays go if each has `items` entries; nullptr: field data of the whole file, which are
-  /// dropped.
+  /// @param data  receives the arrays, which must have `items` entries each; nullptr for field data of the whole file:
+  /// drops them, except SPACE
   void read_field(VtkArrays* data, std::size_t items) {
     cursor_.word("a name");
     const std::size_t arrays = cursor_.count("arrays");
@@ -228,7 +228,7 @@ class LegacyReader {
     }
   }
 
-  /// Runs to the next empty line.
+  /// Skips to the line after the next empty one.
   void skip_metadata() {
     cursor_.line();
     while (cursor_.bytes_left() > 0 && !trimmed(cursor_.line()).empty()) continue;

@@ -15,7 +15,8 @@
 namespace incise::io_detail {
 namespace {
 
-// All arrays of a file together, unpacked, as doubles: coordinates and connectivity shrink to a third or so, whole constant arrays to nothing.
+// Limits on all arrays of a file together, unpacked, as doubles. Compression shrinks coordinates and connectivity to
+// about a third, constant arrays to almost nothing.
 constexpr std::size_t kFreeBytes = 64 << 20;
 constexpr std::size_t kMostBytesPerByte = 64;
 constexpr std::size_t kZlibLargestGain = 1032;  // deflate cannot shrink more than this, so larger claims are damage
@@ -30,7 +31,8 @@ std::uint64_t header_word(const std::string& bytes, std::size_t word, bool is_lo
   return value;
 }
 
-/// Slicer stamps a field array SPACE with "LPS" or "RAS"; VTK writes text arrays in ascii as character codes.
+/// Returns the text of a field array. Slicer stamps the array SPACE with "LPS" or "RAS"; VTK writes text arrays in
+/// ascii as character codes.
 std::string text_of_field(const pugi::xml_node& array) {
   std::string text;
   std::string_view rest = trimmed(array.text().get());
@@ -81,7 +83,7 @@ void VtkXmlFile::fail(const pugi::xml_node& node, std::string found, std::string
 
 VtkXmlFile::VtkXmlFile(const std::filesystem::path& path, const std::string& kind)
     : path_(path), text_(read_text(path)) {
-  // Raw appended data are not XML: they are cut out before the parser sees the text.
+  // Raw appended data are not XML, so they are removed before parsing.
   std::string xml = text_;
   const std::size_t tag = text_.find("<AppendedData");
   if (tag != std::string::npos) {
@@ -139,7 +141,7 @@ std::size_t VtkXmlFile::count(const char* attribute) const {
   return static_cast<std::size_t>(*value);
 }
 
-/// Refuses a file of few bytes that unpacks to very many.
+/// Refuses a small file that unpacks to very many bytes.
 void VtkXmlFile::take_from_budget(const pugi::xml_node& node, std::size_t bytes) const {
   const std::size_t most = kFreeBytes + kMostBytesPerByte * text_.size();
   if (bytes <= most - std::min(most, unpacked_bytes_)) {
@@ -149,7 +151,7 @@ void VtkXmlFile::take_from_budget(const pugi::xml_node& node, std::size_t bytes)
   fail(node, fmt::format("data that unpack to more than {} bytes, in a file of {}", most, text_.size()), "a file that is not packed so far");
 }
 
-/// The decoded, decompressed bytes of an array that is not ascii.
+/// Returns the decoded, decompressed bytes of an array that is not ascii.
 std::string VtkXmlFile::payload(const pugi::xml_node& node) const {
   const bool is_appended = std::string_view(node.attribute("format").as_string()) == "appended";
   const std::size_t offset = node.attribute("offset").as_ullong();
@@ -170,7 +172,7 @@ std::string VtkXmlFile::payload(const pugi::xml_node& node) const {
     return header_word(bytes, i, has_long_headers_, is_big_endian_);
   };
   if (!is_compressed_) return take(word(take(word_size), 0));
-  // What is unpacked becomes doubles: a byte of a small integer takes eight.
+  // Unpacked numbers become doubles: an 8-bit integer then takes eight bytes.
   const std::size_t value_gain = sizeof(double) / std::max<std::size_t>(1, size_of_vtk_type(node.attribute("type").as_string())) + 1;
 
   const std::string sizes = take(3 * word_size);

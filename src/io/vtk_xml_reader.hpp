@@ -12,16 +12,16 @@
 
 namespace incise::io_detail {
 
-/// Numbers of one <DataArray>, whatever their type in the file.
+/// Numbers of one <DataArray>, converted from their type in the file.
 struct VtkArray {
   DataArray data;
   bool is_floating = false;
 };
 using VtkArrays = std::map<std::string, VtkArray>;
 
-/// A VTK XML file (`.vtu`, `.vtp`) in memory: finds the piece, decodes its arrays.
-/// Formats ascii, binary (base64), appended (raw or base64); zlib compression; both byte orders; 32- and 64-bit block
-/// headers.
+/// A VTK XML file (`.vtu`, `.vtp`) in memory: finds the piece and decodes its arrays.
+/// Supports the formats ascii, binary (base64) and appended (raw or base64), zlib compression, both byte orders, and
+/// 32- and 64-bit block headers.
 class VtkXmlFile {
  public:
   /// @param kind  "UnstructuredGrid" or "PolyData".  @throws DataError if the file is no such thing, or has several
@@ -29,13 +29,14 @@ class VtkXmlFile {
   VtkXmlFile(const std::filesystem::path& path, const std::string& kind);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// A count stated by the piece, such as NumberOfPoints; 0 if it is not stated. @throws DataError if it is no count.
+  /// Returns a count stated by the piece, such as NumberOfPoints; 0 if not stated. @throws DataError if it is no count.
   [[nodiscard]] std::size_t count(const char* attribute) const;
-  /// The coordinates, finite, turned to LPS if the file is stamped SPACE=RAS. @throws DataError naming the vertex.
+  /// Returns the coordinates, converted to LPS if the file is stamped SPACE=RAS.
+  /// @throws DataError naming the first vertex that is not finite.
   [[nodiscard]] Points points() const;
-  /// The array called `name` in a section of the piece such as "Cells". @throws DataError if it is missing or damaged.
+  /// Returns the array `name` in a section of the piece such as "Cells". @throws DataError if it is missing or damaged.
   [[nodiscard]] std::vector<double> array(const char* section, const char* name) const;
-  /// All numeric arrays of "PointData" or "CellData", with `items` entries each; vectors turned to LPS like the points.
+  /// Returns all numeric arrays of "PointData" or "CellData", with `items` entries each; vectors in LPS as the points.
   [[nodiscard]] VtkArrays arrays(const char* section, std::size_t items) const;
 
  private:
@@ -61,9 +62,9 @@ class VtkXmlFile {
 /// Whether a comment or stamp says that coordinates are RAS ("SPACE=RAS").
 [[nodiscard]] bool says_ras(std::string_view text);
 
-/// RAS <-> LPS: x and y change sign.
+/// Converts between RAS and LPS: negates x and y.
 void turn_over(Points& points);
-/// The same for the 3-component arrays of floating point numbers: these are taken for vectors (colours are integers).
+/// The same for 3-component arrays of floating-point numbers, which are taken for vectors (colours are integers).
 void turn_over(VtkArrays& arrays);
 
 [[nodiscard]] std::map<std::string, DataArray> without_types(VtkArrays arrays);

@@ -21,7 +21,7 @@ std::string_view bytes_of(const std::vector<Number>& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)};
 }
 
-/// Text as VTK keeps it in ascii string arrays: the codes of its characters, then 0.
+/// Encodes text as VTK's ascii string arrays do: the codes of its characters, then 0.
 std::string field_text(const std::string& name, std::string_view value) {
   std::string codes;
   for (const char c : value) codes += fmt::format("{} ", static_cast<int>(c));
@@ -32,8 +32,7 @@ std::string field_text(const std::string& name, std::string_view value) {
 }  // namespace
 
 VtkXmlText::VtkXmlText(std::string kind, const std::string& counts) : kind_(std::move(kind)) {
-  // Slicer looks for SPACE in the field data of surfaces; meshio, which reads only volume meshes, stops at any text
-  // there.
+  // Slicer looks for SPACE in the field data of surfaces; meshio, which reads only volume meshes, fails on text there.
   const bool is_surface = kind_ == "PolyData";
   const std::string comment = is_surface ? "" : "<!-- SPACE=LPS, lengths in mm -->\n";
   const std::string field_data =

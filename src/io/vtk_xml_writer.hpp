@@ -11,8 +11,7 @@
 
 namespace incise::io_detail {
 
-/// Puts together one VTK XML file with one piece: little endian, zlib-compressed base64, stamped SPACE = LPS,
-/// length_unit = mm.
+/// Builds a VTK XML file with one piece: little endian, zlib-compressed base64, stamped SPACE = LPS, length_unit = mm.
 class VtkXmlText {
  public:
   /// @param kind     "UnstructuredGrid" or "PolyData".
@@ -26,7 +25,7 @@ class VtkXmlText {
   void add(const std::string& name, const std::vector<std::uint8_t>& values);
   void add_points(std::span<const Vec3> points);
   void add_data(const std::string& section, const std::map<std::string, DataArray>& arrays);
-  /// The whole file. @pre called last, once.
+  /// Returns the whole file. @pre called last, once.
   [[nodiscard]] std::string finish();
 
  private:
@@ -36,7 +35,7 @@ class VtkXmlText {
   std::string text_;
 };
 
-/// Checks what all mesh writers ask for. @throws InvalidArgument naming the first offender.
+/// Check the preconditions of all mesh writers. @throws InvalidArgument naming the first offender.
 void require_finite_points(std::span<const Vec3> points);
 void require_data(const std::map<std::string, DataArray>& arrays, std::size_t items);
 

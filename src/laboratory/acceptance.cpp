@@ -39,7 +39,7 @@ Rows asked_json(const AcceptanceSettings& settings) {
           {"tets", settings.tets}};
 }
 
-/// As planned, then along the paper's correction.
+/// Cuts as planned, then along the paper's correction.
 void cut_twice(const AcceptanceSettings& settings, const std::filesystem::path& root, std::uint64_t series,
                Monitor& monitor, Trial& trial, Rows& row) {
   laboratory::HiddenSpecimen hidden{trial.seed, trial.given, root / "truth" / trial.name, 2, series};

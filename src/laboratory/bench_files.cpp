@@ -58,7 +58,7 @@ double number_in(const Json& object, const std::string& key, const std::filesyst
   return found->get<double>();
 }
 
-/// What a bench's specimen file says beside its parameters.
+/// A key of a specimen file beside its parameters.
 struct WholeNumber {
   const char* key;
   const char* meaning;
@@ -111,8 +111,8 @@ std::uint64_t whole_number_in(const Json& document, const char* key, const std::
   return found->get<std::uint64_t>();
 }
 
-/// Takes over the parameters that a file gives.
-/// @param schema  what `incise schema` calls such a file.  @param names  of its other keys.
+/// Sets the parameters that a file gives.
+/// @param schema  name of such a file for `incise schema`. @param names  its other keys.
 template <class Specimen, class Parameters>
 void read_parameters(const Json& document, const char* schema, std::vector<std::string> names,
                      const Parameters& parameters, const std::filesystem::path& file, Specimen& specimen) {

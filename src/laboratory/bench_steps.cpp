@@ -15,7 +15,7 @@
 namespace incise::laboratory {
 namespace {
 
-/// The seed stays out of the laboratory's folder: who knows it can draw the specimen.
+/// The laboratory's folder does not state the seed, from which anyone can draw the specimen.
 void write_run(const std::filesystem::path& folder, const steps::StepContext& context, const std::string& command,
                const std::vector<std::filesystem::path>& inputs) {
   Manifest manifest = steps::manifest_of(context.run, "{}", inputs, context.wall_s());

@@ -31,7 +31,7 @@ std::optional<Interval> interval_at(const AdviceJson& assessment, const std::str
   return Interval{ends.at(0).get<double>(), ends.at(1).get<double>()};
 }
 
-/// @param path  of the cut in an assessment: intended or corrected.
+/// @param path  name of the cut in an assessment: intended or corrected.
 AdvisedCut advised_cut(const AdviceJson& assessment, const std::string& path, const TrialCut& cut,
                        const TrueCut& known) {
   AdvisedCut result;
@@ -44,7 +44,7 @@ AdvisedCut advised_cut(const AdviceJson& assessment, const std::string& path, co
   return result;
 }
 
-/// Where nothing could be predicted, either cut may be the worse one, and the calibration says nothing.
+/// Without a prediction, either cut may be the worse one: the calibration says nothing.
 double stated(const std::optional<double>& probability) {
   constexpr double kNothingKnown = 0.5;
   return probability.value_or(kNothingKnown);
@@ -113,7 +113,7 @@ AdviceJson close_margin_json(const std::vector<AdvisedSpecimen>& specimens) {
           {"bins", std::move(bins)}};
 }
 
-/// What was foretold, and what photographs then show of it; nothing: not foretold, or not measured.
+/// A prediction, and the photographed value; absent: not predicted, or not measured.
 struct Foretold {
   std::optional<Interval> interval;
   std::optional<double> shown;
@@ -153,7 +153,7 @@ constexpr ForetoldInterval kForetold[] = {{"planned", 0.80,
                                              return Foretold{s.gain_95, photographed_gain_mm(s)};
                                            }}};
 
-/// How often intervals of `assess` hold what photographs then show.
+/// Returns how often intervals of `assess` contain the photographed values.
 AdviceJson intervals_json(const std::vector<AdvisedSpecimen>& specimens) {
   AdviceJson list = AdviceJson::array();
   for (const ForetoldInterval& one : kForetold) {

@@ -10,13 +10,13 @@
 
 namespace incise::laboratory {
 
-/// What was said of one cut before it was made, and what came of it.
+/// The statements about one cut before it was made, and its outcome.
 struct AdvisedCut {
-  std::optional<double> p_close_margin;        ///< stated; absent: not
+  std::optional<double> p_close_margin;        ///< stated; absent: not stated
   std::optional<Interval> error_80, error_95;  ///< stated intervals of the photograph's mean |error|, mm
   std::optional<double> photographed_mm;       ///< mean |error| of the photograph; absent: no closed ring in it
-  std::optional<double> true_mm;               ///< the same of the truth; absent: the ring stayed open
-  std::optional<double> least_margin_mm;       ///< of a closed one
+  std::optional<double> true_mm;               ///< mean |error| of the true cut; absent: the ring stayed open
+  std::optional<double> least_margin_mm;       ///< least margin of a closed ring
 };
 inline void describe(Visitor& v, AdvisedCut& c) {
   v("p_close_margin", c.p_close_margin, "Stated probability of a close margin somewhere.", {0.0, 1.0});
@@ -29,44 +29,44 @@ inline void describe(Visitor& v, AdvisedCut& c) {
   v({"least_margin_mm", "Least distance of the true kerf from the tumour's edge.", "mm"}, c.least_margin_mm);
 }
 
-/// A specimen that was advised on and cut twice. Probabilities are absent where they were not stated.
+/// A specimen that was assessed and cut twice. Probabilities are absent if they were not stated.
 struct AdvisedSpecimen {
   std::string name;
   TrialRole role = TrialRole::Test;
-  std::string kind;  ///< of one outside the calibrated range; else empty
+  std::string kind;  ///< of a specimen outside the calibrated range; else empty
   std::string advice;
   std::optional<double> expected_gain_mm;
   std::optional<Interval> gain_80, gain_95;
-  std::size_t series = 0;  ///< intervals draw those of one number together; all 0: as if they were independent
+  std::size_t series = 0;  ///< intervals resample specimens of one number together; all 0: as if independent
   std::optional<double> p_worse, p_worse_if_alike, p_worse_if_unlike, p_unlike;
   AdvisedCut planned, corrected;
-  std::optional<double> p_worse_without_pull;  ///< the same, had the pull not been measured
-  std::optional<AdvisedCut> withheld;          ///< corrected without the pull; absent: not asked for, or refused
-  /// By the truth; nothing: two open rings, which tell nothing.
+  std::optional<double> p_worse_without_pull;  ///< p_worse if the pull had not been measured
+  std::optional<AdvisedCut> withheld;          ///< corrected without the pull; absent: not requested, or refused
+  /// Whether the corrected cut was truly worse. Absent: both rings stayed open, so there is nothing to compare.
   [[nodiscard]] std::optional<bool> is_worse() const;
   [[nodiscard]] std::optional<bool> is_worse_without_pull() const;
 };
 void describe(Visitor& v, AdvisedSpecimen& s);
 
-/// Of the trials that were advised on and cut twice. Whether a corrected cut was the worse one, and whether a margin
-/// fell below the clinical cut-off, is taken from the bench's truth and never from how a specimen was drawn.
+/// Returns the trials that were assessed and cut twice. Only the bench's truth, never the way a specimen was drawn,
+/// decides whether a corrected cut was worse and whether a margin fell below the clinical cut-off.
 /// @param truth  folder with the truth of each cut: NAME_planned/cut_truth.json, NAME_corrected, NAME_withheld.
 [[nodiscard]] std::vector<AdvisedSpecimen> advised_specimens(const std::vector<Trial>& trials,
                                                              const std::filesystem::path& truth);
 
-/// Holds what `incise assess` said of specimens against what happened to them.
+/// Compares the statements of `incise assess` about specimens with the outcomes.
 /// @returns null without specimens; else `specimens`, `advised`, `worse`, `auc`, `auc_outside_alone` and
-///          `auc_without_pull` (advice and correction without it; each null where all or none were worse), `auc_of` and
-///          `auc_of_outside_alone` (the same of what p_worse is made of; a probability that was not stated counts as
-///          one half), `close_margin` (reliability of the stated probability), `intervals` (how often those of error
-///          and gain hold the photographs').
+/// `auc_without_pull` (advice and correction without the pull; each null if all or none were worse), `auc_of` and
+/// `auc_of_outside_alone` (the same for the components of p_worse; a probability that was not stated counts as one
+/// half), `close_margin` (reliability of the stated probability), `intervals` (how often the intervals of error and
+/// gain contain the photographed values).
 [[nodiscard]] nlohmann::ordered_json advice_scores(const std::vector<AdvisedSpecimen>& specimens);
 
-/// The same of an experiment's trials, and in `skipped` those that were not advised on and cut twice.
+/// As advice_scores, for an experiment's trials; `skipped` lists those that were not assessed and cut twice.
 [[nodiscard]] nlohmann::ordered_json hold_advice_against_truth(const std::vector<Trial>& trials,
                                                                const std::filesystem::path& truth);
 
-/// Draws roc.svg (where there is an area) and reliability.svg of such scores into a folder.
+/// Draws roc.svg (if there is an area) and reliability.svg from such scores into a folder.
 void draw_advice(const std::filesystem::path& folder, const nlohmann::ordered_json& advice);
 
 }  // namespace incise::laboratory

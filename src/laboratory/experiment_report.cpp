@@ -36,7 +36,7 @@ void add_picture(ReportData& data, const std::filesystem::path& svg, const std::
   data.on_tissue.push_back({title, lead, {read_text(svg)}, {}});
 }
 
-/// What the paper measured, as the paper's: never ours.
+/// The paper's measurements, marked as the paper's.
 ReportTable papers_table() {
   ReportTable table;
   table.title = "For comparison: what the paper reports of four ex vivo tongues (its Table II; not ours)";
@@ -101,7 +101,7 @@ std::string refused_specimens(const std::vector<Trial>& trials) {
   return list;
 }
 
-/// The figures that the experiment was made for: every path, and its distance from the best one without simulation.
+/// The experiment's main result: every path, and its difference from the best one without simulation.
 ReportTable outcome_table(const PathComparison& paths, const ReportJson& result) {
   ReportTable table{
       "Result (virtual): mean over specimens of the photographs' mean absolute error, path by path",
@@ -127,7 +127,7 @@ ReportTable outcome_table(const PathComparison& paths, const ReportJson& result)
   return table;
 }
 
-/// What may be claimed: the corrections against the best path without a simulated cut.
+/// The claim that the results support: the corrections against the best path without a simulated cut.
 std::string claim(const PathComparison& paths) {
   if (!paths.best_without_simulation)
     return "No rival without a simulated cut can be compared, so no benefit of simulation can be claimed. ";
@@ -138,7 +138,7 @@ std::string claim(const PathComparison& paths) {
   return claims;
 }
 
-/// What the cuts of the calibration's specimens say of the simulated tool.
+/// The simulated tool as fitted to the cuts of the calibration's specimens.
 ReportTable fit_table(const ReportJson& result) {
   ReportTable table{"Calibration (virtual): what the photographs say about the simulated tool",
                     {"parameter", "mean", "sd", "identified by the data", "at the end of the simulated range"},

@@ -6,8 +6,9 @@
 
 namespace incise::laboratory {
 
-/// The page with everything: tables, the comparison's figures, the calibration's, the paper's figures cited beside.
-/// @param folder  of the experiment: figures are taken from there where they are.
+/// Returns the content of the report page: tables, figures of the comparison and of the calibration, and the paper's
+/// numbers, cited.
+/// @param folder  of the experiment; figures are read from it if they exist.
 [[nodiscard]] ReportData experiment_report(const std::vector<Trial>& trials, const PathComparison& paths,
                                            const nlohmann::ordered_json& result, const std::filesystem::path& folder);
 

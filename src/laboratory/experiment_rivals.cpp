@@ -15,13 +15,13 @@ namespace {
 
 constexpr double kHarmMm = 0.1;
 
-/// A specimen's photographed mean |error| along a path; nothing: no closed ring, or not asked for.
+/// Returns a specimen's photographed mean |error| along a path, mm; absent: no closed ring, or not requested.
 std::optional<double> error_along(const TestedSpecimen& specimen, std::string_view name) {
   const PathCut* cut = specimen.find(name);
   return cut != nullptr && cut->end == PathEnd::Measured ? cut->mean_abs_error_mm : std::nullopt;
 }
 
-/// What came of a path in one specimen.
+/// Adds the result of a path in one specimen.
 void add_cut(const TestedSpecimen& specimen, const PathCut& cut, PathResult& result, double& sum_mm) {
   if (cut.end == PathEnd::NotCut) {
     ++result.uncut;
@@ -54,10 +54,10 @@ PathResult result_along(std::span<const TestedSeries> series, std::string_view n
   return result;
 }
 
-/// Errors along two paths of the specimens that both closed.
+/// Errors along two paths, of the specimens whose rings closed along both.
 struct PairedErrors {
   std::vector<double> first, second;
-  std::vector<std::vector<double>> differences;  ///< by series: second less first
+  std::vector<std::vector<double>> differences;  ///< by series: second minus first
 };
 
 PairedErrors paired_errors(std::span<const TestedSeries> series, std::string_view first, std::string_view second) {
@@ -75,8 +75,8 @@ PairedErrors paired_errors(std::span<const TestedSeries> series, std::string_vie
   return errors;
 }
 
-/// Of the mean difference. Specimens of one series share a calibration and an offset of the hand-eye transform, so that
-/// with several series whole ones are drawn anew.
+/// Returns the interval of the mean difference. Specimens of one series share a calibration and a hand-eye offset, so
+/// with several series, whole series are resampled.
 std::optional<Interval> interval_of(const PairedErrors& errors) {
   if (errors.differences.size() > 1) {
     const auto compared = std::ranges::count_if(errors.differences, [](const auto& one) { return !one.empty(); });
@@ -96,7 +96,7 @@ void compare(std::span<const TestedSeries> series, std::string_view best, PathRe
   result.confidence = interval_of(errors);
 }
 
-/// See PathComparison. @param names  of the paths without a simulated cut.
+/// See PathComparison. @param names  the paths without a simulated cut.
 std::optional<std::string> best_of(std::span<const TestedSeries> series, const std::vector<std::string>& names) {
   std::vector<double> sums(names.size(), 0.0);
   bool is_any_common = false;
@@ -115,7 +115,7 @@ std::optional<std::string> best_of(std::span<const TestedSeries> series, const s
   return names[static_cast<std::size_t>(std::min_element(sums.begin(), sums.end()) - sums.begin())];
 }
 
-/// As planned, and every other path that a specimen was to be cut along, in order.
+/// Returns as_planned and every other path along which a specimen should be cut, in order.
 std::vector<std::string> paths_of(std::span<const TestedSeries> series) {
   std::vector<std::string> names{std::string(kAsPlannedPath)};
   const auto add = [&names](const TestedSpecimen& specimen) {
@@ -169,7 +169,7 @@ PathComparison compare_paths(std::span<const TestedSeries> series) {
   std::vector<std::string> without;
   for (const PathResult& path : comparison.paths)
     if (!path.is_simulated) without.push_back(path.name);
-  if (without.size() == 1) return comparison;  // the planned path alone is no rival
+  if (without.size() == 1) return comparison;  // the planned path is no rival
   comparison.best_without_simulation = best_of(series, without);
   if (!comparison.best_without_simulation) return comparison;
   for (PathResult& path : comparison.paths) compare(series, *comparison.best_without_simulation, path);
@@ -208,7 +208,7 @@ std::vector<LearningPoint> learning_curve(std::span<const TestedSeries> series) 
   std::vector<std::optional<std::size_t>> points{0};
   points.insert(points.end(), parts.begin(), parts.end());
   points.emplace_back(std::nullopt);
-  // Of one specimen: both cuts at each point, as if they were its only ones; nothing where one of them is missing.
+  // Returns both cuts of one specimen at each point, as if they were its only ones; nothing if one is missing.
   const auto cuts_at = [&](const TestedSpecimen& specimen, std::optional<std::size_t> photographs,
                            std::string_view path) -> std::optional<PathCut> {
     if (photographs && *photographs > 0) {

@@ -20,18 +20,18 @@ inline constexpr std::array<std::string_view, 3> kTrialRoleNames{"calibrate", "t
   return kTrialRoleNames;
 }
 
-/// A path along which test specimens are cut beside the planned and the corrected one.
+/// A path along which test specimens are cut, in addition to the planned and the corrected one.
 enum class RivalPath {
-  Constant,         ///< moved out by one number, the mean signed error of the calibration's photographs
-  Profile,          ///< moved by their mean error by direction
-  ProfileSmoothed,  ///< the same, without fast waves
-  ProfileInView,    ///< by their mean error by direction in the view, wherever each cut started
-  Photographs,      ///< by what the photographs forecast for this ring, see RingForecaster; no simulation
+  Constant,         ///< moved outwards by one number, the mean signed error of the calibration's photographs
+  Profile,          ///< moved by the photographs' mean error by direction
+  ProfileSmoothed,  ///< the same, without short waves
+  ProfileInView,    ///< moved by the photographs' mean error by direction in the view, wherever each cut started
+  Photographs,      ///< moved by the photographs' forecast for this ring, see RingForecaster; no simulation
   PaperPass,        ///< the paper's single pass by the simulated mid-line, with the calibrated tool
   Uncalibrated,     ///< corrected with the default tool and no bias
-  Hybrid,           ///< corrected, with what the photographs say beyond the simulation by direction
-  Learned,          ///< corrected, with what they forecast for this ring beyond the simulation
-  Robust,           ///< the path of least expected error over all that the calibration leaves possible
+  Hybrid,           ///< corrected; the photographs add, by direction, what the simulation misses
+  Learned,          ///< corrected; the photographs' forecast for this ring adds what the simulation misses
+  Robust,           ///< the path of least expected error over the calibration's posterior
 };
 inline constexpr std::array<std::string_view, 10> kRivalPathNames{
     "constant",    "profile",    "profile_smoothed",    "profile_in_view",
@@ -45,7 +45,7 @@ inline constexpr std::array<std::string_view, 10> kRivalPathNames{
   return path <= RivalPath::Photographs;
 }
 
-/// Whether the path is made of a forecast.
+/// Whether the path is computed from a forecast.
 [[nodiscard]] constexpr bool is_of_forecast(RivalPath path) {
   return path == RivalPath::ProfileInView || path == RivalPath::Photographs || path == RivalPath::Learned;
 }
@@ -55,14 +55,14 @@ struct RivalCut {
   TrialCut cut;
 };
 
-/// A cut along what only the first photographs forecast.
+/// A cut along the forecast from only the first photographs.
 struct LearningCut {
   std::size_t photographs = 0;
   RivalPath path = RivalPath::Photographs;  ///< or Learned
   TrialCut cut;
 };
 
-/// One specimen of an experiment, and what came of it.
+/// One specimen of an experiment, and its results.
 struct Trial {
   std::string name;
   std::uint64_t seed = 0;
@@ -70,36 +70,36 @@ struct Trial {
   std::string kind;                                   ///< of a specimen outside the calibrated range; else empty
   std::vector<std::pair<std::string, double>> given;  ///< hidden parameters that are not drawn from the seed
   TrialCut planned, corrected;
-  std::vector<RivalCut> rivals;                    ///< those that were asked for
-  std::vector<LearningCut> learning;               ///< those that were asked for
-  TrialCut withheld;                               ///< corrected as if the pull had not been measured, if asked for
-  nlohmann::ordered_json compensation;             ///< what `incise compensate` printed; null: not run
-  nlohmann::ordered_json assessment;               ///< what `incise assess` printed; null: not run
-  nlohmann::ordered_json assessment_without_pull;  ///< the same, had the pull not been measured
-  nlohmann::ordered_json known_physics;            ///< what `incise bench floor` printed; null: not run
+  std::vector<RivalCut> rivals;                    ///< the requested ones
+  std::vector<LearningCut> learning;               ///< the requested ones
+  TrialCut withheld;                               ///< corrected as if the pull was not measured; only if requested
+  nlohmann::ordered_json compensation;             ///< output of `incise compensate`; null: not run
+  nlohmann::ordered_json assessment;               ///< output of `incise assess`; null: not run
+  nlohmann::ordered_json assessment_without_pull;  ///< the same as if the pull had not been measured
+  nlohmann::ordered_json known_physics;            ///< output of `incise bench floor`; null: not run
   double stretch_force_n = 0.0, youngs_modulus_kpa = 0.0;
   std::optional<double> registration_rmse_mm;  ///< absent: `register` refused, or was not reached
-  std::optional<std::vector<std::string>> unlike;  ///< covariates outside the calibration's; absent: no forecast
+  std::optional<std::vector<std::string>> unlike;  ///< covariates outside the calibration's range; absent: no forecast
   std::string ended_at;                        ///< the step before the first cut that refused; empty: none did
   std::vector<std::string> commands;
 };
 
-/// Every step that refused this specimen or a cut of it.
+/// Returns every step that refused this specimen or a cut of it.
 [[nodiscard]] std::vector<std::string> refusals_of(const Trial& trial);
 
-/// The test specimens that were cut twice, and what the correction did to them.
+/// The test specimens that were cut twice, and the effect of the correction on them.
 struct TrialSummary {
-  std::size_t specimens = 0;  ///< with that role, whatever came of them
-  std::size_t pairs = 0;      ///< of them: two closed rings
-  std::size_t opened = 0;  ///< a closed ring as planned, and the second cut's was open or not to be found: worse, too
-  std::size_t uncorrected = 0;                       ///< a closed ring as planned, and no second cut: a step refused it
+  std::size_t specimens = 0;  ///< all with that role
+  std::size_t pairs = 0;      ///< specimens with two closed rings
+  std::size_t opened = 0;  ///< a closed ring as planned; after the second cut open or not found. Counts as worse
+  std::size_t uncorrected = 0;                       ///< a closed ring as planned; a step refused the second cut
   double mean_before_mm = 0.0, mean_after_mm = 0.0;  ///< mean over specimens of the mean absolute error
   double gain_percent = 0.0;
-  double gain_percent_of_all = 0.0;  ///< with the uncorrected ones, whose error stays what it was
+  double gain_percent_of_all = 0.0;  ///< including the uncorrected ones, whose error is unchanged
   std::size_t worse = 0;             ///< specimens whose error grew, and those that opened
-  double most_worse_mm = 0.0;        ///< by how much an error grew at most; 0: none did
+  double most_worse_mm = 0.0;        ///< greatest increase of an error; 0: none increased
 };
-/// What is of the pairs is null without any.
+/// Values of the pairs are null if there are none.
 inline void describe(Visitor& v, TrialSummary& s) {
   const auto if_pairs = [&s](double value) { return s.pairs > 0 ? std::optional(value) : std::nullopt; };
   v("specimens", s.specimens, "With that role, whatever came of them.");
@@ -113,30 +113,30 @@ inline void describe(Visitor& v, TrialSummary& s) {
   v("worse", s.worse, "Specimens whose error grew, and those that opened.");
   v({"most_worse_mm", "By how much an error grew at most; 0: none did.", "mm"}, s.most_worse_mm);
 }
-/// Of the specimens with that role, as planned against the corrected cut, or against that along another path. No pairs:
-/// zeros.
+/// Summarises the specimens with that role: as planned against the corrected cut, or against the cut along another
+/// path. Zeros without pairs.
 [[nodiscard]] TrialSummary summary_of(const std::vector<Trial>& trials, TrialRole role,
                                       std::optional<RivalPath> path = std::nullopt);
 
-/// "learned_4": of what belongs to a forecast of the first photographs.
+/// Returns a name for results of a forecast from the first photographs: "learned_4".
 [[nodiscard]] std::string learning_name(RivalPath path, std::size_t photographs);
 
-/// The cut along a path; nothing: it was not asked for.
+/// Returns the cut along a path; null: it was not requested.
 [[nodiscard]] const TrialCut* find_rival(const Trial& trial, RivalPath path);
 
-/// Mean |error| of the photograph, mm; nothing: no closed ring was measured.
+/// Returns the photograph's mean |error|, mm; absent: no closed ring was measured.
 [[nodiscard]] std::optional<double> mean_error_mm(const TrialCut& cut);
-/// What is left to a planner that knows the bench's physics, of the specimens that summary_of counts as pairs:
-/// `specimens`, `mean_after_mm` (from the truth, not from photographs).
+/// Returns the error that remains if the planner knows the bench's physics, for the pairs of summary_of: `specimens`,
+/// `mean_after_mm` (from the truth, not from photographs).
 [[nodiscard]] nlohmann::ordered_json known_physics_json(const std::vector<Trial>& trials);
 
-/// One row a cut: the paper's Table II in our own version.
+/// Returns one row per cut: our version of the paper's Table II.
 [[nodiscard]] nlohmann::ordered_json table_2_json(const std::vector<Trial>& trials);
-/// By specimen, what `incise assess` said and whether its corrected cut was the worse one.
+/// Returns, by specimen, the output of `incise assess` and whether the corrected cut was worse.
 [[nodiscard]] nlohmann::ordered_json assessments_json(const std::vector<Trial>& trials);
 void write_table_2(const std::filesystem::path& file, const std::vector<Trial>& trials);
 
-/// A cell as a person reads it, nothing for null. @param column  its name, which tells a score or a share from a
+/// Returns a cell for a reader, empty for null. @param column  its name, which distinguishes a score or share from a
 /// length.
 [[nodiscard]] std::string cell(const nlohmann::ordered_json& value, std::string_view column);
 

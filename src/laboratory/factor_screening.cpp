@@ -56,7 +56,7 @@ second_bench::Factors factors_on(const FractionalFactorial& design, const second
   return on;
 }
 
-/// By direction in the picture, the first to its right.
+/// Returns the errors by direction in the picture, first the direction to the right.
 std::optional<laboratory::ErrorByDirection> errors_in(const std::filesystem::path& evaluation) {
   const PhotographedCut cut = read_photographed_cut(evaluation);
   return error_profile(cut.incision, cut.tumor_edge,
@@ -69,7 +69,7 @@ std::optional<laboratory::ErrorByDirection> errors_in(const std::filesystem::pat
 ScreenedCut cut_one(const ScreeningSettings& settings, const std::filesystem::path& root, std::uint64_t seed,
                     const std::string& specimen_name, const std::string& run_name, const second_bench::Factors& factors,
                     Monitor& monitor) {
-  // A series of its own, so that its hand-eye offset is, too.
+  // Each specimen is a series, so it has its own hand-eye offset.
   laboratory::HiddenSpecimen hidden{seed, {}, root / "truth" / specimen_name / run_name, 2, seed};
   hidden.factors = factors;
   laboratory::TrialSetup setup{.name = specimen_name, .tets = settings.tets};
@@ -151,7 +151,7 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
   std::vector<ScreenedCut> cuts(specimens * runs);
   const auto specimen_name = [](std::size_t s) { return fmt::format("S{}", s + 1); };
   const auto factors_of = [&](std::size_t r) { return factors_on(design, settings.factors, r); };
-  // The folder says which factors were on, so that another choice of them does not go on with its cuts.
+  // The folder's name states which factors were on, so another selection does not continue with its cuts.
   const auto run_name = [&](std::size_t r) {
     unsigned bits = 0;
     for (const second_bench::Factor factor : factors_of(r)) bits |= 1U << static_cast<unsigned>(factor);

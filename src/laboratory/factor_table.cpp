@@ -14,7 +14,8 @@ namespace {
 using Responses = std::vector<std::optional<double>>;  // run by run
 using Runs = std::vector<std::optional<ErrorByDirection>>;
 
-/// Mean, both halves of the first wave, and what is left in each direction: a linear map of the errors.
+/// Returns the mean, both components of the first wave, and the remainder in each direction: a linear map of the
+/// errors.
 std::vector<double> parts_of(const ErrorByDirection& errors) {
   const auto count = static_cast<double>(errors.size());
   const auto angle = [count](std::size_t i) { return 2.0 * std::numbers::pi * static_cast<double>(i) / count; };
@@ -30,7 +31,7 @@ std::vector<double> parts_of(const ErrorByDirection& errors) {
   return parts;
 }
 
-/// Of what was found for each part: its squares summed up as level, shift and rest.
+/// Returns the sums of squares of the parts: level, shift and rest.
 ErrorParts squares_of(std::span<const double> parts) {
   ErrorParts squares{parts[0] * parts[0], parts[1] * parts[1] + parts[2] * parts[2], 0.0};
   const std::span<const double> rest = parts.subspan(3);
@@ -48,7 +49,7 @@ ErrorParts roots_of(const ErrorParts& squares) {
   return {std::sqrt(squares.level_mm), std::sqrt(squares.shift_mm), std::sqrt(squares.rest_mm)};
 }
 
-/// What each factor does to one specimen, part by part, and how far that is known.
+/// Effects of the factors on one specimen, part by part, with their standard errors.
 struct SpecimenEffects {
   std::vector<std::vector<double>> changes, standard_errors;  // by factor and part
 };
@@ -88,8 +89,8 @@ void count_cuts(const FractionalFactorial& design, const std::vector<Runs>& erro
   }
 }
 
-/// Mean of what a fit leaves in runs where a group's pairs are alike, less that in the others; absent: it was measured
-/// in none of one kind.
+/// Returns the mean residual of a fit in runs where a group's pairs are alike, minus the mean in the other runs;
+/// absent: no run of one kind was measured.
 std::optional<double> contrast_of(const FractionalFactorial& design, const FractionalFactorial::Pair& pair,
                                   const Responses& residuals) {
   double sums[2] = {0.0, 0.0}, counts[2] = {0.0, 0.0};
@@ -103,7 +104,7 @@ std::optional<double> contrast_of(const FractionalFactorial& design, const Fract
   return sums[1] / counts[1] - sums[0] / counts[0];
 }
 
-/// @param fits  of the mean |error|, one for each specimen.
+/// @param fits  of the mean |error|, one per specimen.
 std::vector<PairEffect> pairs_of(const FractionalFactorial& design, std::span<const std::string> names,
                                  const std::vector<FactorialFit>& fits) {
   std::vector<PairEffect> found;

@@ -53,7 +53,7 @@ bool write_plot(const std::filesystem::path& folder, const MeasurePlot& what, co
   }
   const double first = greatest.begin()->first;
   const double last = greatest.rbegin()->first;
-  const double beside = first < last ? 0.0 : 0.1 * first;  // one place alone: the limit is still a line
+  const double beside = first < last ? 0.0 : 0.1 * first;  // a single x: the limit is still a line
   const LineSeries limit{"limit", {first - beside, last + beside}, {what.limit_mm, what.limit_mm}, true};
   const LinePlot plot{
       .title = what.title, .x_label = what.x_label, .y_label = what.y_label, .series = {marks, line, limit}};
@@ -78,11 +78,11 @@ void write_figures(const std::filesystem::path& folder, const PowerResult& resul
         &PowerCut::speed_mm_s, &PowerCut::bulge_mm, limits.bulge_limit_mm},
        &result.series.speed_cuts});
   for (const auto& [plot, cuts] : plots) {
-    if (!write_plot(folder, plot, *cuts)) std::filesystem::remove(folder / plot.file);  // none of an earlier run stays
+    if (!write_plot(folder, plot, *cuts)) std::filesystem::remove(folder / plot.file);  // of an earlier run
   }
 }
 
-/// All that was asked for, defaults included.
+/// Returns all settings, defaults included.
 std::string settings_of_power(const PowerResult& result) {
   PowerJson json = to_json(result.request);
   for (const PowerSubject& subject : result.subjects) json["specimens"][subject.name] = specimen_json(subject.specimen);

@@ -5,8 +5,8 @@
 namespace incise::laboratory {
 namespace {
 
-/// Tissue to which the electrode hardly sticks, round a hard, deep tumour: it is dragged less far than its stiffness
-/// lets one expect, and a correction overshoots.
+/// Tissue to which the electrode hardly sticks, around a hard, deep tumour: it is dragged less far than its stiffness
+/// suggests, and a correction overshoots.
 OutsideKind hardly_dragged(const char* name, double youngs_modulus_kpa, double toughness_j_m2, Random& random) {
   OutsideKind kind{name, {{"youngs_modulus_kpa", youngs_modulus_kpa}, {"toughness_j_m2", toughness_j_m2}}};
   kind.given.emplace_back("rupture_percent", random.uniform(0.7, 0.8));
@@ -23,7 +23,7 @@ OutsideKind failed_specimen() {
 }
 
 OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index) {
-  constexpr std::uint64_t kStream = 0x6f75747369646573ULL;  // apart from the streams that specimens are drawn from
+  constexpr std::uint64_t kStream = 0x6f75747369646573ULL;  // separate from the streams from which specimens are drawn
   Random random(seed ^ kStream);
   switch (index % 5) {
     case 0:

@@ -17,11 +17,12 @@ struct OutsideKind {
 /// The paper's failed specimen: stiff, and slipped out of its clamp.
 [[nodiscard]] OutsideKind failed_specimen();
 
-/// The index-th of a series: stiff, oedematous, scarred, oedematous, soft in turn; how far out is drawn from the seed.
-/// They differ from the calibration's in the suture's pull, all but the stiffer half of the soft ones far. Stiff and
-/// soft tissue is cut as other tissue is, and a correction helps it. Oedematous and scarred tissue hardly sticks to the
-/// electrode and surrounds a hard, deep tumour, of which `assess` compares nothing: it is dragged less far than its
-/// stiffness lets one expect. Oedematous tissue is harmed by that, scarred tissue at times.
+/// Returns the index-th specimen of a series: stiff, oedematous, scarred, oedematous, soft in turn. How far outside it
+/// lies is drawn from the seed. The pull of the suture differs from the calibration's: far for all kinds but the
+/// stiffer half of the soft ones. Stiff and soft tissue is cut like other tissue, and a correction helps. Oedematous
+/// and scarred tissue hardly sticks to the electrode and surrounds a hard, deep tumour, which `assess` does not
+/// compare. It is dragged less far than its stiffness suggests. So a correction harms oedematous tissue, and scarred
+/// tissue at times.
 [[nodiscard]] OutsideKind outside_specimen(std::uint64_t seed, std::uint64_t index);
 
 }  // namespace incise::laboratory

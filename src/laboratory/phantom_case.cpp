@@ -28,8 +28,8 @@ void write_volume(const std::filesystem::path& folder, PhantomForm form, const P
   write_dicom_series(folder / "ct", phantom.ct, tags);
 }
 
-/// The tumour's middle is placed 600 mm in front of the robot's base and 200 mm above it; the tip of the tongue points
-/// away from the base.
+/// Places the middle of the tumour 600 mm in front of the robot's base and 200 mm above it, with the tip of the tongue
+/// pointing away from the base.
 std::string case_text(const Phantom& phantom, PhantomForm form, std::uint64_t seed) {
   const Vec3 origin = phantom.tumor_center_mm;
   return fmt::format(R"(# A virtual specimen made by `incise phantom --seed {seed}`: no real tissue.

@@ -34,12 +34,12 @@ constexpr const char* kHint = "Finish it with `incise experiment` of this versio
 struct PooledSeries {
   std::filesystem::path folder;
   std::uint64_t seed = 0, specimens = 0, bench = 1;
-  std::size_t photographs = 0;  ///< that were given to the calibration
+  std::size_t photographs = 0;  ///< number given to the calibration
   TestedSeries tested;
   std::vector<AdvisedSpecimen> advised;
 };
 
-/// A list of described values in a file. @throws DataError where there is none.
+/// Returns a list of described values in a file. @throws DataError if there is none.
 template <class T>
 std::vector<T> list_in(const PoolJson& json, const std::filesystem::path& file, const char* key) {
   if (!json.is_object() || !json.contains(key) || !json.at(key).is_array())
@@ -57,7 +57,7 @@ std::uint64_t count_in(const PoolJson& json, const std::filesystem::path& file, 
   return json.at(key).get<std::uint64_t>();
 }
 
-/// A measured cut has an error, and no other has one.
+/// Requires an error of a measured cut, and of no other.
 void check(const laboratory::PathCut& cut, const std::string& specimen, const std::filesystem::path& file) {
   if ((cut.end == laboratory::PathEnd::Measured) == cut.mean_abs_error_mm.has_value()) return;
   throw DataError(file, specimen,
@@ -66,7 +66,7 @@ void check(const laboratory::PathCut& cut, const std::string& specimen, const st
                   "an error for measured cuts alone", kHint);
 }
 
-/// What is read can be counted: known paths, each once, and a measured cut as planned.
+/// Requires known paths, each once, and a measured cut as planned.
 void check(const TestedSpecimen& specimen, const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& found, const char* expected) {
     throw DataError(file, specimen.name, found, expected, kHint);
@@ -94,7 +94,7 @@ void check(const TestedSpecimen& specimen, const std::filesystem::path& file) {
   }
 }
 
-/// Photographs that were given to the calibration.
+/// Returns the number of photographs given to the calibration.
 std::size_t photographs_in(const PoolJson& study, const std::filesystem::path& file) {
   if (!study.contains("table_2") || !study.at("table_2").is_array())
     throw DataError(file, "table_2", "no list", "a list of cuts", kHint);
@@ -148,7 +148,7 @@ void require_apart(const std::vector<PooledSeries>& all) {
   }
 }
 
-/// A path that only some series were cut along would be held against the others on other specimens.
+/// Requires the same paths everywhere: a path of only some series would be compared on other specimens.
 void require_same_paths(const std::vector<PooledSeries>& all) {
   const auto paths_of = [](const PooledSeries& series) {
     std::set<std::string> paths;
@@ -176,7 +176,7 @@ PoolJson comparison_json(const std::vector<TestedSeries>& series, const PathComp
   return json;
 }
 
-/// Of one series: how far every path differs from the best one over all series.
+/// Returns, for one series, the difference of every path from the best one over all series.
 PoolJson series_json(const PooledSeries& series, const PathComparison& pooled) {
   PoolJson json{{"folder", series.folder.string()},
                 {"seed", series.seed},
@@ -213,7 +213,8 @@ TextTable paths_csv(const std::vector<std::pair<std::string, PathComparison>>& p
   return csv;
 }
 
-/// Differences from the best path without simulation, side by side for each part that has one. @pre the first has.
+/// Draws the differences from the best path without simulation, side by side for each part that has one. @pre the first
+/// has.
 std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>& parts, std::size_t series) {
   CategoryPlot plot{.title = fmt::format("Virtual specimens of {} series: mean |error| less that of the best path "
                                          "without simulation",

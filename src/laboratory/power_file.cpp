@@ -6,7 +6,7 @@
 namespace incise {
 namespace {
 
-/// A unit that was mistaken would set the robot's speed.
+/// Refuses impossible lengths and speeds: a wrong unit would set the robot's speed.
 void require_possible(const TimedCut& cut, const std::filesystem::path& file, std::size_t line) {
   if (!(cut.length_mm >= kShortestTimedCutMm && cut.length_mm <= kLongestTimedCutMm)) {
     throw DataError(file, fmt::format("line {}, column length_mm", line), fmt::format("{}", cut.length_mm),

@@ -24,14 +24,14 @@ namespace {
 
 using StudyJson = nlohmann::ordered_json;
 
-constexpr double kReferenceKpa = 70.0;  // at which the survey is stretched: the pull is proportional to it
+constexpr double kReferenceKpa = 70.0;  // Young's modulus for the survey's stretch: the pull is proportional to it
 constexpr double kPlatformZMm =
     150.0;  // height of the virtual holder's platform in the robot's frame: known to the laboratory
 constexpr double kSurveyEdgeMm = 4.0;  // of the mesh that finds the stretched shape
-constexpr double kMmPerPixel = 0.03;   // of the photograph, as the paper's
+constexpr double kMmPerPixel = 0.03;   // of the photograph, as in the paper
 constexpr double kSurfaceSpacingMm = 1.0;
 constexpr double kMostHoleMm =
-    8.0;  // of the depth under the mark: the edge is laid onto the simulated tissue, whose heights are whole
+    8.0;  // of the depth beneath the mark: the edge is laid onto the simulated tissue, whose heights have no holes
 
 std::string text(double number) {
   return fmt::format("{}", number);
@@ -46,7 +46,7 @@ double pull_n(const StudyJson& stretched) {
   return 1e-3 * largest;
 }
 
-/// What each method reads of a choice, as a case file has it.
+/// The fields that each method reads of a choice, as in a case file.
 std::vector<std::string> fields_of(const CompensationChoice& choice) {
   std::vector<std::string> fields;
   if (choice.method != CompensationMethod::Default)
@@ -63,7 +63,7 @@ std::vector<std::string> fields_of(const CompensationChoice& choice) {
   return fields;
 }
 
-/// Whether a correction ended with a path of its own.
+/// Whether a correction produced a path.
 bool has_path(const StudyJson& compensation) {
   return compensation.is_object() && compensation.contains("path") && compensation.at("path").is_string();
 }
@@ -194,7 +194,7 @@ bool SpecimenTrial::find_place() {
   return true;
 }
 
-/// The edge that was marked on the tissue, as the simulation would have it.
+/// Writes the edge that was marked on the tissue, in the simulation's frame.
 void SpecimenTrial::write_edge(const StudyJson& registration) const {
   Contour edge = read_contour(at("tracked/contour.csv"));
   const Mat4 T_sim_camera = transform_in(registration, "T_target_source", this->registration()).inverse();
@@ -254,8 +254,8 @@ TrialCut SpecimenTrial::cut(const std::filesystem::path& path, const std::string
   }
   exporting.overrides = setup_.overrides;
   for (const std::string& check : setup_.overrides) exported.insert(exported.end(), {"--override", check});
-  // The bench's tissue is virtual, and the cut as planned is made to see how far it misses: cautions are taken. What a
-  // simulation refuses is not cut here either.
+  // The bench's tissue is virtual, and the purpose of the cut as planned is to see how far it misses, so cautions are
+  // accepted. What a simulation refuses is not cut here either.
   for (const VerdictRule& rule : verdict_rules()) {
     if (rule.severity != VerdictStatus::Caution) continue;
     exporting.accepted.emplace_back(rule.id);

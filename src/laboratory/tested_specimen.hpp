@@ -15,19 +15,19 @@
 
 namespace incise::laboratory {
 
-/// What the bench knows of one cut.
+/// The bench's knowledge of one cut.
 struct TrueCut {
   std::optional<double> mean_abs_error_mm;  ///< absent: the ring stayed open
-  double least_margin_mm = 0.0;             ///< of a closed one, between kerf and edge
+  double least_margin_mm = 0.0;             ///< of a closed ring, between kerf and edge
 };
 /// @param truth  folder with NAME_TAG/cut_truth.json.
-/// @returns nothing where this run made no such cut, whatever an earlier one left there. @throws DataError.
+/// @returns nothing if this run made no such cut, even if an earlier run left one there. @throws DataError.
 [[nodiscard]] std::optional<TrueCut> true_cut(const std::filesystem::path& truth, const Trial& trial,
                                               const TrialCut& cut, std::string_view tag);
 
 enum class PathEnd {
   Measured,  ///< a closed ring in the photograph
-  Open,      ///< cut, and open or not to be found
+  Open,      ///< cut; the ring is open or was not found
   NotCut,    ///< a step refused the path
 };
 inline constexpr std::array<std::string_view, 3> kPathEndNames{"measured", "open", "not_cut"};
@@ -35,14 +35,14 @@ inline constexpr std::array<std::string_view, 3> kPathEndNames{"measured", "open
   return kPathEndNames;
 }
 
-inline constexpr double kMostErrorMm = 1e3;  ///< of what is read: no ring is that large
+inline constexpr double kMostErrorMm = 1e3;  ///< limit for values that are read: no ring is that large
 
-/// What came of one specimen along one path.
+/// The result of one specimen along one path.
 struct PathCut {
-  std::string path;  ///< as_planned, incise, or that of a RivalPath
+  std::string path;  ///< as_planned, incise, or the name of a RivalPath
   PathEnd end = PathEnd::NotCut;
-  std::optional<double> mean_abs_error_mm;  ///< of the photograph; where it is measured
-  std::optional<double> least_margin_mm;    ///< of the truth; where the ring truly closed
+  std::optional<double> mean_abs_error_mm;  ///< of the photograph; present if measured
+  std::optional<double> least_margin_mm;    ///< of the truth; present if the ring truly closed
 };
 inline void describe(Visitor& v, PathCut& c) {
   v("path", c.path, "as_planned, incise, or a rival.");
@@ -52,7 +52,7 @@ inline void describe(Visitor& v, PathCut& c) {
     c.least_margin_mm);
 }
 
-/// What came of one along the forecast of only the first photographs.
+/// The result of one specimen along the forecast from only the first photographs.
 struct LearningPathCut {
   std::size_t photographs = 0;
   PathCut cut;  ///< along `photographs` or `learned`
@@ -62,14 +62,14 @@ inline void describe(Visitor& v, LearningPathCut& c) {
   describe(v, c.cut);
 }
 
-/// A test specimen whose planned cut was measured, and what came of it along every path. It is what comparisons are
-/// made of, within one experiment and over several.
+/// A test specimen whose planned cut was measured, and its results along every path. Comparisons, within one experiment
+/// and over several, use these.
 struct TestedSpecimen {
   std::string name;
-  std::optional<std::size_t> unlike;  ///< covariates outside those of the calibration; absent: no forecast
+  std::optional<std::size_t> unlike;  ///< number of covariates outside the calibration's range; absent: no forecast
   std::vector<PathCut> cuts;          ///< as planned first
   std::vector<LearningPathCut> learning;  ///< by photographs, ascending
-  /// Nothing: this path was not asked for.
+  /// Returns null if this path was not requested.
   [[nodiscard]] const PathCut* find(std::string_view path) const;
 };
 inline void describe(Visitor& v, TestedSpecimen& s) {
@@ -81,14 +81,14 @@ inline void describe(Visitor& v, TestedSpecimen& s) {
 
 inline constexpr std::string_view kAsPlannedPath = "as_planned";
 inline constexpr std::string_view kIncisePath = "incise";
-/// Whether no simulated cut takes part in a path of that name. @throws InvalidArgument for a name of no path.
+/// Whether no simulated cut takes part in the path of that name. @throws InvalidArgument for an unknown name.
 [[nodiscard]] bool is_path_without_simulation(std::string_view name);
 
-/// Of the trials that are tests and whose planned cut was measured. @throws DataError for a truth that is damaged.
+/// Returns the trials that are tests and whose planned cut was measured. @throws DataError for a damaged truth.
 [[nodiscard]] std::vector<TestedSpecimen> tested_specimens(const std::vector<Trial>& trials,
                                                            const std::filesystem::path& truth);
 
-/// Those whose rings are unlike the calibration's, or the others; without a forecast a ring is neither.
+/// Returns the specimens whose rings are unlike the calibration's, or the others. A ring without a forecast is neither.
 [[nodiscard]] std::vector<TestedSpecimen> of_likeness(const std::vector<TestedSpecimen>& specimens, bool is_unlike);
 
 }  // namespace incise::laboratory

@@ -9,10 +9,10 @@
 
 namespace incise::laboratory {
 
-/// A specimen of a virtual bench on its way through a folder, by one thread.
+/// A specimen of a virtual bench that one thread takes through its steps, in its own folder.
 class TrialOnBench {
  public:
-  /// @param folder  of what its planner is given. @param monitor  asked whether to stop; outlives the trial.
+  /// @param folder  of what the planner receives. @param monitor  asked whether to stop; must outlive the trial.
   TrialOnBench(const std::filesystem::path& folder, const TrialSetup& setup, const HiddenSpecimen& hidden,
                const Monitor& monitor)
       : steps_(folder, one_, monitor), bench_(hidden, steps_), specimen_(setup, steps_, bench_) {}
@@ -26,14 +26,14 @@ class TrialOnBench {
   SpecimenTrial specimen_;
 };
 
-/// What a folder is of.
+/// The purpose of an output folder.
 struct FolderClaim {
-  const char* schema = "";  ///< of its bench.json
+  const char* schema = "";  ///< schema of its bench.json
   const char* what = "";    ///< "an acceptance"
 };
 
-/// One folder holds the specimens of one first seed. What an earlier run said of the whole would be taken for this
-/// one's, and is removed. @throws DataError for a folder of something else, or of another seed.
+/// Claims a folder for the specimens of one first seed. Removes `summaries`, the overall results of an earlier run, so
+/// that nobody takes them for results of this run. @throws DataError for a folder of another purpose or another seed.
 void claim_folder(const std::filesystem::path& output, const FolderClaim& claim, std::uint64_t seed,
                   std::initializer_list<const char*> summaries);
 

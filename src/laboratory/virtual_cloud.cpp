@@ -15,7 +15,7 @@ constexpr double kNoiseMm = 0.1;
 constexpr double kMissingShare = 0.1;
 constexpr double kMostTiltDeg = 5.0, kMostTurnDeg = 20.0, kMostShiftMm = 20.0;
 
-/// As the case says; else on the virtual bench's holder.
+/// Returns the place that the case states; else the virtual bench's holder.
 Mat4 believed_place(const Case& settings, const Points& positions) {
   if (settings.T_robot_sim) return *settings.T_robot_sim;
   Box3 box;
@@ -25,7 +25,7 @@ Mat4 believed_place(const Case& settings, const Points& positions) {
   return T;
 }
 
-/// Somewhere near that place: turned and shifted about the middle of what is seen there.
+/// Returns a place near `believed`: turned and shifted about the middle of the visible points.
 Mat4 true_place(const Mat4& believed, const Points& seen, Random& random) {
   const auto angle = [&](double most_deg) { return units::rad_from_deg(random.uniform(-most_deg, most_deg)); };
   Vec3 middle = Vec3::Zero();
@@ -41,7 +41,7 @@ Mat4 true_place(const Mat4& believed, const Points& seen, Random& random) {
   return move * believed;
 }
 
-/// As a camera sees it: with noise, and not all of it.
+/// Returns the surface as a camera sees it: with noise, and incomplete.
 PointCloud measured(const PointCloud& surface, const Mat4& T, Random& random) {
   PointCloud cloud;
   const auto noise = [&] { return kNoiseMm * random.normal(); };

@@ -16,9 +16,9 @@ namespace incise::laboratory {
 struct HiddenSpecimen {
   std::uint64_t seed = 1;
   std::vector<std::pair<std::string, double>> given;  ///< hidden parameters that are not drawn from the seed
-  std::filesystem::path truth;  ///< folder of the specimen; what happened in a cut goes to TRUTH_TAG beside it
-  int bench = 1;                ///< of which laboratory it is
-  std::uint64_t series = 1;     ///< of the second laboratory, as all below
+  std::filesystem::path truth;  ///< folder of the specimen; the truth of a cut goes to TRUTH_TAG beside it
+  int bench = 1;                ///< its laboratory
+  std::uint64_t series = 1;     ///< only of the second laboratory, as is `factors`
   second_bench::Factors factors = second_bench::all_factors();
 };
 
@@ -31,7 +31,7 @@ class VirtualLaboratory : public Laboratory {
   StepAnswer take_readings(const std::filesystem::path& folder) override;
   StepAnswer cut(const std::filesystem::path& program, double power_w, const std::filesystem::path& folder,
                  const std::string& tag) override;
-  /// What is left to a planner that knows how this very tissue is cut.
+  /// Returns the error that remains if the planner knows how this tissue is cut.
   [[nodiscard]] StepAnswer known_physics();
 
  private:

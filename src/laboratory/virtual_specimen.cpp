@@ -118,7 +118,7 @@ class SecondSpecimen : public VirtualSpecimen {
 
 }  // namespace
 
-/// A specimen that cannot be held and stretched is a result. The monitor gets a warning; nothing is read or cut.
+/// A specimen that cannot be held and stretched is a result, not an error: nothing is read or cut.
 bool is_stretched(const BenchBody& body, Monitor& monitor) {
   if (body.inverted_tets > 0)
     monitor.message(Severity::Detail,

@@ -23,31 +23,31 @@ class VirtualSpecimen {
   virtual ~VirtualSpecimen() = default;
   /// Whether the specimen could be stretched. If not, `monitor` gets a warning, and nothing can be read or cut.
   [[nodiscard]] virtual bool is_held(Monitor& monitor) const = 0;
-  /// A specimen file in full.
+  /// A complete specimen file.
   [[nodiscard]] virtual nlohmann::ordered_json file() const = 0;
-  /// @throws CaseError for an elasticity map where the laboratory has none.
+  /// Takes the readings. @throws CaseError for an elasticity map if the laboratory has none.
   [[nodiscard]] virtual Readings readings(bool has_elasticity, Monitor& monitor) const = 0;
-  /// What its surgeon asks for: plan fields of a case, and `power_w`. Null: nothing.
+  /// The surgeon's prescription: plan fields of a case, and `power_w`. Null: none.
   [[nodiscard]] virtual nlohmann::ordered_json prescription() const = 0;
   virtual void write_truth(const std::filesystem::path& folder) const = 0;
-  /// Where the arm takes the tip on a course in its base frame.
+  /// Returns the tip's true course when the arm follows `asked`, a course in its base frame.
   [[nodiscard]] virtual std::vector<TipPose> course(const std::vector<TipPose>& asked) const = 0;
   [[nodiscard]] virtual std::optional<std::string> misfit(const std::vector<TipPose>& course) const = 0;
-  /// @returns nothing for a cut that does not come to rest.
+  /// Cuts the specimen. @returns nothing for a cut that does not come to rest.
   [[nodiscard]] virtual std::optional<PhotographedCut> cut(const std::vector<TipPose>& course, double power_w,
                                                            const PhotographSettings& settings, Workers& workers,
                                                            Monitor& monitor) const = 0;
 };
 
-/// The specimen of a file, of either laboratory. @throws DataError
+/// Returns the specimen in a file, of either laboratory. @throws DataError
 [[nodiscard]] std::unique_ptr<const VirtualSpecimen> specimen_of(const std::filesystem::path& file,
                                                                  const steps::StepContext& context);
-/// A request's specimen: that of its file, or one drawn from the context's seed.
-/// @throws DataError; CaseError for factors or a series that its laboratory does not have.
+/// Returns a request's specimen: from its file, or drawn from the context's seed.
+/// @throws DataError; CaseError for a bench, factors or a series that the specimen's laboratory or file does not allow.
 [[nodiscard]] std::unique_ptr<const VirtualSpecimen> specimen_of(const MakeSpecimenRequest& request,
                                                                  const steps::StepContext& context);
 
-/// A specimen of the first laboratory that cannot be held and stretched is a result: `monitor` gets a warning.
+/// Whether a specimen of the first laboratory could be held and stretched. If not, `monitor` gets a warning.
 [[nodiscard]] bool is_stretched(const BenchBody& body, Monitor& monitor);
 /// The truth about a virtual cut of the first laboratory.
 [[nodiscard]] nlohmann::ordered_json truth_of(const BenchBody& body, const BenchCut& cut);

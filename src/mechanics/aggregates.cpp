@@ -6,7 +6,7 @@
 namespace incise {
 namespace {
 
-/// Splits [begin, end) into `groups` runs and appends where each ends.
+/// Splits [begin, end) of `order` into `groups` runs and appends the end of each run to `ends`.
 void split(std::span<const Vec3> positions, std::vector<std::int32_t>& order, std::size_t begin, std::size_t end,
            std::size_t groups, std::vector<std::int32_t>& ends) {
   if (groups == 1) {

@@ -8,7 +8,7 @@
 
 namespace incise {
 
-/// Vertices in groups of near-equal size that lie close together.
+/// Partition of vertices into aggregates of nearly equal size whose members lie close together.
 struct Aggregates {
   std::vector<std::int32_t> start;      ///< A + 1, into `vertices`
   std::vector<std::int32_t> vertices;   ///< N, ascending within an aggregate
@@ -16,8 +16,8 @@ struct Aggregates {
   [[nodiscard]] std::size_t count() const { return start.empty() ? 0 : start.size() - 1; }
 };
 
-/// Recursive bisection across the longest side of the box around the points, into ceil(N / per_aggregate) groups. @pre
-/// per_aggregate > 0.
+/// Divides the points into ceil(N / per_aggregate) aggregates by recursive bisection across the longest side of their
+/// bounding box. @pre per_aggregate > 0.
 [[nodiscard]] Aggregates bisect(std::span<const Vec3> positions, std::size_t per_aggregate);
 
 }  // namespace incise

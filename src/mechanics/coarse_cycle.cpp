@@ -12,7 +12,7 @@ namespace {
 template <class Real>
 using Eight = std::array<Real, 8>;
 
-// The kernels of either precision under one name.
+// One name for the kernels of both precisions.
 void sum_blocks(const double* blocks, const std::int32_t* column, std::size_t count, const double* x, double* sum) {
   kernels().sum_blocks_double(blocks, column, count, x, sum);
 }
@@ -26,7 +26,7 @@ void multiply_top(const float* matrix, std::size_t n, const float* c, float* y, 
   kernels().multiply_dense_rows(matrix, n, c, y, begin, end);
 }
 
-/// One block times six numbers.
+/// Returns block i times six numbers.
 template <class Real>
 Eight<Real> times(const std::vector<Real>& blocks, std::size_t i, const Real* x) {
   constexpr std::int32_t kFirst = 0;
@@ -37,7 +37,7 @@ Eight<Real> times(const std::vector<Real>& blocks, std::size_t i, const Real* x)
 
 }  // namespace
 
-/// From zero, in ascending order; leaves what is then left of the right side summed over the groups.
+/// Sweeps from zero, in ascending order, and sums the residual over the groups.
 template <class Real>
 void CoarseCycle<Real>::sweep_forward(std::span<const Real> c) {
   Eight<Real> sum;
@@ -53,7 +53,7 @@ void CoarseCycle<Real>::sweep_forward(std::span<const Real> c) {
       motion_[8 * i + k] = force[k] - sum[k];
     }
   }
-  // An aggregate's own equation held when its turn came: what is left is what later ones added to it.
+  // Each aggregate's equation held at its turn: the residual is what later aggregates added.
   std::fill(group_force_.begin(), group_force_.end(), Real{0});
   for (std::size_t i = 0; i < aggregates(); ++i) {
     const auto begin = column.begin() + row_start[i];
@@ -79,7 +79,7 @@ void CoarseCycle<Real>::add_motions_of_groups(Workers& workers) {
   }
 }
 
-/// In descending order.
+/// Sweeps in descending order.
 template <class Real>
 void CoarseCycle<Real>::sweep_backward(std::span<Real> y) {
   Eight<Real> sum;

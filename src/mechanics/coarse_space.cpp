@@ -15,19 +15,19 @@
 namespace incise {
 namespace {
 
-/// With more aggregates than this a cycle over three levels is cheaper than a dense inverse, which grows as their
+/// With more aggregates than this, a three-level cycle is cheaper than a dense inverse, whose cost grows as their
 /// square.
 constexpr std::size_t kMaxDenseAggregates = 192;
 constexpr std::size_t kAggregatesPerGroup = 8;
 constexpr std::size_t kMaxGroups = 512;
-/// Share of an aggregate's largest motion below which another counts as one it cannot make (held, or all vertices on a
+/// Eigenvalue, relative to the largest, below which an aggregate cannot make a motion (axes held, or vertices on a
 /// line).
 constexpr double kLeastMotionShare = 1e-8;
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
-/// Columns: combinations of six motions that can be made, of unit size, given the motions' Gram matrix; zero columns
-/// for the rest.
+/// Returns, as columns, the independent combinations of six motions, of unit size, from the Gram matrix of the motions.
+/// Columns that correspond to no motion are zero.
 Mat6 independent_motions(const Mat6& gram) {
   const Eigen::SelfAdjointEigenSolver<Mat6> solver(gram);
   Mat6 basis = Mat6::Zero();
@@ -40,7 +40,7 @@ Mat6 independent_motions(const Mat6& gram) {
   return basis;
 }
 
-/// In the layout of a CoarseCycle.
+/// Returns the blocks in the layout of a CoarseCycle.
 std::vector<double> packed(const std::vector<Mat6>& blocks, bool is_transposed) {
   std::vector<double> numbers(kCoarseBlock * blocks.size(), 0.0);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
@@ -61,7 +61,7 @@ void mirror(std::vector<double>& dense, std::size_t n) {
   }
 }
 
-/// The inverse in place of a positive definite n x n matrix of which the lower triangle is given.
+/// Inverts a positive definite matrix in place, given its lower triangle.
 void invert(std::vector<double>& dense, std::size_t size) {
   const int n = static_cast<int>(size);
   int info = 0;
@@ -180,7 +180,7 @@ void CoarseSpace::refresh_dense(const BlockMatrix& matrix, Workers& workers) {
   change_basis(basis, workers);
   for (std::size_t a = 0; a < basis.size(); ++a) {
     for (std::size_t i = 0; i < 6; ++i) {
-      // A motion that cannot be made has an empty row; a 1 keeps the factorisation going and T removes it again.
+      // A motion that cannot be made has a row of zeros; a 1 keeps the matrix invertible, and T removes it again.
       if (basis[a].col(static_cast<int>(i)).isZero(0.0)) dense_[(6 * a + i) * (n + 1)] = 1.0;
     }
   }
@@ -190,7 +190,7 @@ void CoarseSpace::refresh_dense(const BlockMatrix& matrix, Workers& workers) {
   mirror(dense_, n);
 }
 
-/// Which aggregates share an entry of A.
+/// Finds which aggregates are coupled by an entry of A.
 void CoarseSpace::connect_aggregates(const BlockPattern& pattern) {
   cycle_.row_start.push_back(0);
   std::vector<std::int32_t> others;
@@ -212,7 +212,7 @@ void CoarseSpace::connect_aggregates(const BlockPattern& pattern) {
   for (std::vector<Mat6>* blocks : {&basis_, &into_basis_, &lift_}) blocks->resize(aggregates_.count());
 }
 
-/// The blocks of one aggregate's row, each still transposed.
+/// Computes the blocks of one aggregate's row, each still transposed.
 void CoarseSpace::project_blocks(const BlockMatrix& matrix, std::size_t aggregate) {
   const auto begin = cycle_.column.begin() + cycle_.row_start[aggregate];
   const auto end = cycle_.column.begin() + cycle_.row_start[aggregate + 1];
@@ -222,14 +222,14 @@ void CoarseSpace::project_blocks(const BlockMatrix& matrix, std::size_t aggregat
                [&](std::int32_t other) -> Mat6& { return own[std::lower_bound(begin, end, other) - begin]; });
 }
 
-/// A basis of the motions that an aggregate can make, in which its diagonal block is 1.
+/// Finds a basis of the motions that an aggregate can make, in which its diagonal block is 1.
 void CoarseSpace::find_basis(std::size_t aggregate) {
   const Mat6 motions = motions_of(aggregate);
   const auto begin = cycle_.column.begin() + cycle_.row_start[aggregate];
   const auto end = cycle_.column.begin() + cycle_.row_start[aggregate + 1];
   const auto slot = std::lower_bound(begin, end, static_cast<std::int32_t>(aggregate)) - cycle_.column.begin();
   Mat6 diagonal = motions.transpose() * blocks_[static_cast<std::size_t>(slot)] * motions;
-  Mat6 into_motions = Mat6::Zero();  // their left inverse: they are orthogonal
+  Mat6 into_motions = Mat6::Zero();  // left inverse of `motions`, whose columns are orthogonal
   for (int i = 0; i < 6; ++i) {
     if (motions.col(i).isZero(0.0)) {
       diagonal(i, i) = 1.0;  // as in refresh_dense
@@ -244,7 +244,7 @@ void CoarseSpace::find_basis(std::size_t aggregate) {
   into_basis_[aggregate] = factor.matrixU() * into_motions;
 }
 
-/// B_ij becomes Tᵀ_i B_ij T_j in one aggregate's row.
+/// Replaces B_ij by Tᵀ_i B_ij T_j in one aggregate's row.
 void CoarseSpace::change_block_basis(std::size_t aggregate) {
   for (auto slot = cycle_.row_start[aggregate]; slot < cycle_.row_start[aggregate + 1]; ++slot) {
     const auto other = static_cast<std::size_t>(cycle_.column[static_cast<std::size_t>(slot)]);
@@ -254,8 +254,8 @@ void CoarseSpace::change_block_basis(std::size_t aggregate) {
   }
 }
 
-/// The aggregate's motion when its group makes each of its six: t + ω x (center - group's) and ω, over the radii; in
-/// its basis.
+/// Returns, in the aggregate's basis, its motion for each of the six motions of its group: t + ω × (its centre minus
+/// the group's) and ω, both scaled by the radii.
 CoarseSpace::Mat6 CoarseSpace::rigid_lift(std::size_t aggregate) const {
   const auto group = static_cast<std::size_t>(groups_.of_vertex[aggregate]);
   Vec3 middle = Vec3::Zero();
@@ -277,7 +277,7 @@ CoarseSpace::Mat6 CoarseSpace::rigid_lift(std::size_t aggregate) const {
   return into_basis_[aggregate] * lift;
 }
 
-/// Lifts into each group's independent motions.
+/// Finds the lift of every aggregate from the independent motions of its group.
 void CoarseSpace::find_lifts() {
   for (std::size_t a = 0; a < aggregates_.count(); ++a) lift_[a] = rigid_lift(a);
   for (std::size_t group = 0; group < groups_.count(); ++group) {
@@ -295,7 +295,7 @@ void CoarseSpace::find_lifts() {
   }
 }
 
-/// The dense inverse of the third level.
+/// Computes the dense inverse of the third level.
 void CoarseSpace::project_groups() {
   const std::size_t n = 6 * groups_.count();
   cycle_.top.assign(n * n, 0.0);
@@ -311,7 +311,7 @@ void CoarseSpace::project_groups() {
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
-    // A motion that no member can make: an empty row, as in refresh_dense; no lift reaches it.
+    // A motion that no member can make has a row of zeros, as in refresh_dense; no lift uses it.
     if (cycle_.top[i * (n + 1)] == 0.0) cycle_.top[i * (n + 1)] = 1.0;
   }
   invert(cycle_.top, n);
@@ -331,7 +331,7 @@ void CoarseSpace::refresh_cycle(const BlockMatrix& matrix, Workers& workers) {
     const auto slot =
         std::lower_bound(row, cycle_.column.begin() + cycle_.row_start[a + 1], static_cast<std::int32_t>(a)) -
         cycle_.column.begin();
-    blocks_[static_cast<std::size_t>(slot)].setZero();  // the 1 that Gauss and Seidel divide by
+    blocks_[static_cast<std::size_t>(slot)].setZero();  // the 1 is implied in Gauss-Seidel
   }
   cycle_.blocks = packed(blocks_, false);
   cycle_.basis = packed(basis_, false);

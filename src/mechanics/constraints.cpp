@@ -63,7 +63,7 @@ void describe_under(Visitor& v, const Field& key, PatchRegion& r) {
   v.end();
 }
 
-/// Written NAME=VALUE.
+/// Describes a name and a value, written NAME=VALUE.
 void name_and_value(Visitor& v, const Field& key, std::string& name, double& value) {
   std::string text = fmt::format("{}={}", name, value);
   v(key, text);
@@ -132,8 +132,8 @@ std::vector<VertexId> select_region(const TetMesh& mesh, const PlaneRegion& regi
   return vertices_where(mesh, [&](std::size_t v) { return std::abs(height(v)) <= *region.within_mm; });
 }
 
-/// The values of a named array with one number per item. @param kind  "point" or "cell", @param item  "vertex" or
-/// "tet".
+/// Returns the values of a named array with one number per item.
+/// @param kind  "point" or "cell".  @param item  "vertex" or "tet".
 const std::vector<double>& named_values(const std::map<std::string, DataArray>& arrays, const std::string& name,
                                         std::size_t count, const char* kind, const char* item) {
   const auto array = arrays.find(name);

@@ -12,7 +12,7 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 static_assert(sizeof(Mat3) == 9 * sizeof(double) &&
-              sizeof(Vec3) == 3 * sizeof(double));  // the kernels see plain numbers
+              sizeof(Vec3) == 3 * sizeof(double));  // the kernels read plain arrays
 
 void robust_rotation(const double* f, double* r) {
   const Mat3 guess = Eigen::Map<const RowMajor>(r);
@@ -48,7 +48,7 @@ TetSweep reading_sweep(const TissueModel& model, const TissueState& state) {
           robust_rotation};
 }
 
-/// The sweep of one run of batches.
+/// Returns the sweep restricted to one run of batches.
 TetSweep of_run(TetSweep sweep, const TetBatches& batches, std::size_t run) {
   const auto begin = static_cast<std::size_t>(batches.run_start[run]);
   sweep.batches = batches.batches.data() + begin;
@@ -56,7 +56,7 @@ TetSweep of_run(TetSweep sweep, const TetBatches& batches, std::size_t run) {
   return sweep;
 }
 
-/// Runs of one colour share no vertex and go at once; colours follow each other.
+/// Sweeps the runs of one colour in parallel, because they share no vertex, and the colours one after another.
 void sweep_all(const TetSweep& sweep, const TetBatches& batches, Workers& workers) {
   const KernelTable& table = kernels();
   for (std::size_t color = 0; color < batches.colors(); ++color) {

@@ -25,7 +25,7 @@ void check_sizes(const TissueModel& model, const TissueState& state, std::size_t
 
 Mat3 deformation_gradient(const TissueModel& model, std::span<const Vec3> positions, std::size_t tet) {
   const Tet& corners = model.mesh.tets[tet];
-  const Vec3& origin = vertex(positions, corners[0]);  // differences keep the digits of a body far from the origin
+  const Vec3& origin = vertex(positions, corners[0]);  // differences preserve precision for a body far from the origin
   Mat3 f = Mat3::Zero();
   for (std::size_t c = 1; c < 4; ++c) {
     f.noalias() += (vertex(positions, corners[c]) - origin) * model.gradients[tet][c].transpose();

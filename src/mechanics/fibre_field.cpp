@@ -17,12 +17,12 @@ namespace incise {
 namespace {
 
 constexpr const char* kField = "specimen.material.fibre_field";
-/// Of the residual. Gradients of a flat potential are then noise far below kLeastGradient.
+/// Of the relative residual. Where the potential is flat, its gradient is then noise far below kLeastGradient.
 constexpr double kTolerance = 1e-12;
-/// Share of the body's mean gradient below which the potential counts as flat.
+/// Gradient, as a share of the body's mean gradient, below which the potential counts as flat.
 constexpr double kLeastGradient = 1e-6;
 
-/// The vertices of one of the two regions.
+/// Returns the vertices of one of the two regions.
 std::vector<VertexId> selected(const TetMesh& mesh, const Region& region, const char* name) {
   const std::string field = fmt::format("{}.{}", kField, name);
   std::vector<VertexId> vertices;
@@ -48,7 +48,7 @@ void require_disjoint(const TetMesh& mesh, std::span<const VertexId> from, std::
       "two regions apart from each other", "Make one of them smaller");
 }
 
-/// Laplace's equation for the potential of the vertices: some have theirs, the others find it.
+/// Laplace's equation for the potential at the vertices, which is given in both regions and unknown elsewhere.
 class Potential {
  public:
   Potential(const TetMesh& mesh, std::span<const VertexId> from, std::span<const VertexId> to)
@@ -76,14 +76,14 @@ class Potential {
     const Eigen::VectorXd found = solver.solve(load_);
     result.iterations = static_cast<int>(solver.iterations());
     result.residual = solver.error();
-    // A residual that is not a number compares as not converged.
+    // Written so that a NaN residual counts as not converged.
     if (!(result.residual <= kTolerance) || !found.allFinite()) result.outcome = Outcome::NotConverged;
     for (std::size_t v = 0; v < values_.size(); ++v) {
       if (unknown_[v] >= 0) values_[v] = found[unknown_[v]];
     }
   }
 
-  /// 1/mm. The constant part is taken off first, so that a potential that does not change has the gradient 0.
+  /// Returns the gradient in a tet, 1/mm. Differences are taken first: a constant potential has exactly the gradient 0.
   [[nodiscard]] Vec3 gradient(std::size_t t, const ShapeGradients& shape) const {
     const Tet& tet = mesh_.tets[t];
     Vec3 sum = Vec3::Zero();
@@ -92,7 +92,7 @@ class Potential {
   }
 
  private:
-  /// The matrix of the unknown vertices, lower half; the known ones go to the load.
+  /// Returns the lower triangle of the matrix of the unknown vertices; moves the known ones to the load.
   Eigen::SparseMatrix<double> assembled() {
     std::vector<Eigen::Triplet<double, std::int32_t>> entries;
     entries.reserve(10 * mesh_.tets.size());
@@ -121,12 +121,12 @@ class Potential {
 
   const TetMesh& mesh_;
   std::vector<double> values_;
-  std::vector<std::int32_t> unknown_;  ///< the place of each vertex among the unknown ones; negative: held
+  std::vector<std::int32_t> unknown_;  ///< per vertex: its index among the unknown ones; negative: given
   Eigen::VectorXd load_;
 };
 
-/// Gives flat tets the mean direction of those neighbours that have one, by volume, layer after layer. A fibre has no
-/// sense: each neighbour's direction is turned to the side of the first, so that the mean is never zero.
+/// Gives flat tets the volume-weighted mean direction of those neighbours that have one, layer after layer. A fibre's
+/// direction has no sign: each neighbour's is first turned towards the sum so far, so the mean is never zero.
 void spread(const TetMesh& mesh, std::span<const double> volumes_mm3, std::vector<std::size_t> flat,
             std::vector<Vec3>& directions) {
   const std::vector<std::array<std::int32_t, 4>> neighbours = face_neighbours(mesh);

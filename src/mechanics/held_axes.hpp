@@ -4,15 +4,15 @@
 
 namespace incise {
 
-/// Axes of one vertex whose equation is replaced, bit i for axis i: its constrained axes, or all of them when nothing
-/// of the body pulls on it or when it is among `also_held` (one flag per vertex, or empty).
+/// Returns the axes of one vertex whose equations are replaced, bit i for axis i: its constrained axes, or all if its
+/// diagonal block is zero (no tet holds it) or if it is flagged in `also_held` (one flag per vertex, or empty).
 [[nodiscard]] std::uint8_t held_axes(const TissueModel& model, const BlockMatrix& matrix,
                                      std::span<const std::uint8_t> also_held, std::size_t v);
 
-/// Zero along the held axes.
+/// Sets the right side to zero along the held axes.
 void hold_right_side(std::uint8_t axes, Vec3& right_side);
 
-/// Identity rows and columns for the held axes of every vertex (bits as above), in one row of blocks.
+/// Replaces, in one row of blocks, the rows and columns of all held axes (bits as above) by those of the identity.
 void hold_row(BlockMatrix& matrix, std::span<const std::uint8_t> held, std::size_t row);
 
 }  // namespace incise

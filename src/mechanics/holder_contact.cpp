@@ -13,15 +13,14 @@
 namespace incise {
 namespace {
 
-/// Barycentric weights below this are on the edge or corner.
+/// A barycentric weight below this counts as 0: the point is on the opposite edge.
 constexpr double kOnEdge = 1e-9;
-/// A point this near to the surface takes the surface's normal: the way to the nearest point has no direction of its
-/// own.
+/// A point nearer to the surface than this takes the surface's normal: its offset has no reliable direction.
 constexpr double kOnSurfaceMm = 1e-9;
-/// Sine of the angle by which a point may lean over the rim and still be straight behind the sheet.
+/// Sine of the angle between offset and normal up to which a point at the rim still counts as behind the sheet.
 constexpr double kLeanOverRim = 1e-6;
 
-/// Far from everything.
+/// The result for a point that touches nothing.
 SupportGap clear_of_surface() {
   return {std::numeric_limits<double>::infinity(), Vec3::UnitZ()};
 }
@@ -70,7 +69,7 @@ void HolderContact::find_edges(const TriMesh& surface) {
                    fmt::format("expected neighbours with the same orientation, found two that differ at {}", name()));
     Vec3 sum = Vec3::Zero();
     for (const Use& use : uses) sum += area_normal(surface, triangles_[use.triangle]).normalized();
-    // Two triangles folded flat onto each other have no normal between them; either one's will do.
+    // Two triangles folded flat onto each other have no mean normal; either one's will do.
     if (sum.norm() < kOnEdge) sum = area_normal(surface, triangles_[uses.front().triangle]);
     for (const Use& use : uses) {
       edge_normals_[use.triangle][use.opposite] = sum.normalized();
@@ -104,7 +103,7 @@ void HolderContact::find_normals(const TriMesh& surface) {
 }
 
 SupportGap HolderContact::gap(const Vec3& p) const {
-  if (!p.allFinite()) return clear_of_surface();  // a state that blew up is judged by its residual, not here
+  if (!p.allFinite()) return clear_of_surface();  // a diverged state is detected by its residual, not here
   if (is_closed_ && !box_.contains(p)) return clear_of_surface();
   const SurfacePoint near = query_.nearest(p);
   const Triangle& corners = triangles_[near.triangle.index()];
@@ -112,7 +111,7 @@ SupportGap HolderContact::gap(const Vec3& p) const {
   bool is_on_rim = false;
   int zeros = 0;
   std::size_t zero = 0;   // the last corner without weight
-  std::size_t whole = 0;  // the corner with the most
+  std::size_t whole = 0;  // the corner with the largest weight
   for (std::size_t c = 0; c < 3; ++c) {
     const auto i = static_cast<int>(c);
     if (near.barycentric[i] < kOnEdge) {

@@ -10,8 +10,8 @@
 
 namespace incise {
 
-/// Zeros in large memory pages where the system has them: a product that reads the whole matrix in one go then seldom
-/// waits for an address to be looked up, which on a virtual machine takes a third of its time.
+/// Returns zeros in large memory pages, if the system has them. A product that streams through the whole matrix then
+/// seldom waits for address translation, which on a virtual machine takes a third of its time.
 template <class Number>
 std::vector<Number> zeros_in_large_pages(std::size_t count) {
   std::vector<Number> values;
@@ -22,7 +22,7 @@ std::vector<Number> zeros_in_large_pages(std::size_t count) {
   if (count * sizeof(Number) >= kWorthwhile) {
     const std::size_t begin = (reinterpret_cast<std::uintptr_t>(values.data()) + kPage - 1) / kPage * kPage;
     const std::size_t end = (reinterpret_cast<std::uintptr_t>(values.data()) + count * sizeof(Number)) / kPage * kPage;
-    // A mere hint: where it is refused, the pages are small ones and nothing else differs.
+    // Only a hint: if it is refused, the pages are small and nothing else differs.
     static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
   }
 #endif

@@ -14,7 +14,7 @@ constexpr std::size_t kTetsPerChunk = 256;
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// What the law makes of every tet at one state; carved tets are left untouched.
+/// Response of every live tet at one state.
 class TetResponses {
  public:
   TetResponses(const TissueModel& model, TissueState& state, Workers& workers)
@@ -50,8 +50,8 @@ class TetResponses {
 
   [[nodiscard]] const std::vector<Mat3>& stresses() const { return stresses_; }
 
-  /// The four blocks of the row of `corner`. Block (b, a) is computed as the transpose of (a, b): symmetric bit for
-  /// bit.
+  /// Adds the four blocks in the row of `corner`. Block (b, a) is computed as the transpose of (a, b): symmetric bit
+  /// for bit.
   void add_stiffness(std::size_t tet, std::size_t corner, BlockMatrix& matrix) const {
     const auto& gradients = model_.gradients[tet];
     const Mat3 to_principal = tangents_[tet].v.transpose();
@@ -148,8 +148,8 @@ void add_law_response(const TissueModel& model, TissueState& state, std::span<Ve
   TetResponses tets(model, state, workers);
   tets.find_stresses();
   if (stiffness != nullptr) tets.find_tangents(tangent);
-  // Each vertex gathers from its tets in ascending order: no two threads write the same place, and the order of sums is
-  // fixed.
+  // Each vertex gathers from its tets in ascending order: no two threads write to the same row, and the order of sums
+  // is fixed.
   workers.for_each(model.mesh.vertices.size(), kVerticesPerChunk, [&](std::size_t v) {
     Vec3 force = Vec3::Zero();
     for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {

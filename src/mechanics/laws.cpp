@@ -7,12 +7,13 @@
 namespace incise {
 namespace {
 
-/// Sums of two principal stretches below this make the polar rotation ambiguous; its turn is held to this curvature.
+/// Sum of two principal stretches, relative to the largest or to 1, below which the polar rotation is ambiguous. The
+/// tangent uses at least this sum.
 constexpr double kLeastStretchSum = 1e-6;
-/// A fibre shortened below this share has lost its direction.
+/// Below this stretch a fibre has lost its direction.
 constexpr double kLeastFibreStretch = 1e-6;
 /// Change of shape w at which the stiffening is half of Yeoh's: far beyond what tissue survives, and low enough that
-/// the energy stays finite for tets that are turned inside out.
+/// the energy of inverted tets stays finite.
 constexpr double kMostStiffenedShape = 100.0;
 
 Mat3 cofactors(const Mat3& f) {
@@ -38,7 +39,8 @@ struct NeoHookean {
         h2(5.0 / 6.0 * mu) {}
 };
 
-/// 2 Ψ_shape/μ of the stable Neo-Hookean law alone; 0 or more. Tends to I₁ − 3 where the volume is kept.
+/// Returns w = 2 Ψ_shape/μ of the stable Neo-Hookean law without stiffening, >= 0. At small strain and constant volume
+/// it tends to I₁ − 3.
 double shape_measure(const Deformation& d) {
   const double stretch = d.f.squaredNorm() - 3.0;
   const double dilation = determinant(d.f) - 1.0;
@@ -49,7 +51,7 @@ double shape_measure(const Deformation& d) {
 struct Stiffening {
   double energy_kpa;  // g − Ψ₀
   double slope;       // g'
-  double root_of_g2;  // √g'', per √kPa: in a product with a large stress, where g'' alone would be lost
+  double root_of_g2;  // √g'', per √kPa: multiplied by a large stress, where g'' alone would underflow
   Stiffening(const ShapeLaw& law, double w) {
     const double u = w / kMostStiffenedShape;
     const double q = 1.0 / (1.0 + u);
@@ -59,7 +61,7 @@ struct Stiffening {
   }
 };
 
-/// Without its negative eigenvalues.
+/// Returns the matrix with its negative eigenvalues set to zero.
 Mat3 projected(const Mat3& symmetric) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(symmetric);
   const Vec3 values = solver.eigenvalues().cwiseMax(0.0);
@@ -67,7 +69,7 @@ Mat3 projected(const Mat3& symmetric) {
   return 0.5 * (result + result.transpose());
 }
 
-/// Curvatures of the symmetric and of the skew change of each pair of directions, listed under the third.
+/// Curvatures of the symmetric and the skew change of each pair of directions; entry k is for the other two directions.
 struct PairCurvatures {
   Vec3 symmetric;
   Vec3 skew;
@@ -83,7 +85,7 @@ PairCurvatures corotational_pairs(double mu, double p, const Vec3& sigma, bool i
   return pairs;
 }
 
-/// How much more energy, force and slope of the force a fibre has than the linear one, E_f/2 e².
+/// Energy, force and slope of the force of a fibre, relative to those of the linear one, E_f/2 e².
 struct FibreGrowth {
   double energy = 1.0, force = 1.0, slope = 1.0;
   FibreGrowth(double stiffening, double strain) {
@@ -94,7 +96,7 @@ struct FibreGrowth {
     slope = force * (1.0 + 2.0 * x);
     energy = x > 0.0 ? std::expm1(x) / x : 1.0;
     if (x == exponent) return;
-    // Onwards with the slope of the limit, whose strain is this share of the fibre's.
+    // Continue with the slope at the limit, whose strain is this share of the fibre's.
     const double share = std::sqrt(kMostFibreExponent / stiffening) / strain;
     const double beyond = 1.0 - share;
     energy = share * share * energy + 2.0 * share * beyond * force + beyond * beyond * slope;
@@ -144,7 +146,7 @@ PrincipalTangent principal_tangent(const ShapeLaw& shape, double p_kpa, double k
   } else {
     NeoHookean law(shape.mu_kpa, sigma.squaredNorm(), sigma.prod());
     const Vec3 dj(sigma[1] * sigma[2], sigma[2] * sigma[0], sigma[0] * sigma[1]);
-    if (shape.stiffening > 0.0) {  // g' ∂²Ψ₀ + g'' ∂Ψ₀ ∂Ψ₀ᵀ; the second part changes stretches alone
+    if (shape.stiffening > 0.0) {  // g' ∂²Ψ₀ + g'' ∂Ψ₀ ∂Ψ₀ᵀ; the second term affects only the stretches
       const Stiffening growth(shape, shape_measure(d));
       const Vec3 slope = growth.root_of_g2 * (2.0 * law.f1 * sigma + law.h1 * dj);
       result.stretch = slope * slope.transpose();

@@ -17,13 +17,13 @@ namespace incise {
 namespace {
 
 constexpr const char* kWhere = "case";
-/// Farthest that vertices may be moved, in diagonals of the body's box. No tissue stretches a hundredfold, and from there
-/// on rounding of the positions eats the strain.
+/// Largest displacement of vertices, in diagonals of the body's box. No tissue stretches a hundredfold, and beyond that
+/// the rounding of positions hides the strain.
 constexpr double kMostDiagonals = 100.0;
-/// Deepest that a vertex may lie inside a holder at rest, as a mesh and a scan of the same contact differ; from deeper,
-/// the nearest way out need not be the one that the tissue came by.
+/// Largest depth of a vertex inside a holder at rest: mesh and scan of the same contact differ. From deeper inside, the
+/// nearest way out may lead through the wrong side.
 constexpr double kDeepestStartMm = 2.0;
-/// Smallest share of the largest eigenvalue at which a rigid motion counts as stopped.
+/// Eigenvalue, as a share of the largest, above which a rigid motion counts as stopped.
 constexpr double kLeastStoppedShare = 1e-10;
 constexpr const char* kAxisNames = "xyz";
 
@@ -172,7 +172,7 @@ class ConstraintApplier {
 
   void apply_one(const TractionConstraint& traction) {
     require_finite("traction_kpa", traction.traction_kpa);
-    static_cast<void>(selected(traction.where));  // says what is wrong with the region
+    static_cast<void>(selected(traction.where));  // throws if the region is wrong
     const std::vector<VertexLoad> loads = vertex_loads(model_.mesh, skin_, traction);
     if (loads.empty()) throw nothing_selected("boundary face");
     for (const VertexLoad& load : loads) {
@@ -215,7 +215,7 @@ void apply_constraints(TissueModel& model, const Vec3& gravity_mm_s2) {
   model.applied_load_mn.assign(model.constraints.size(), Vec3::Zero());
 
   ConstraintApplier applier(model, boundary_faces(model.mesh));
-  // Supports last: a vertex that a clamp holds against the plane is the clamp's, not theirs.
+  // Supports come last: a vertex that a clamp holds against the plane belongs to the clamp.
   for (const bool is_support_turn : {false, true}) {
     for (std::size_t i = 0; i < model.constraints.size(); ++i) {
       if (std::holds_alternative<SupportConstraint>(model.constraints[i]) == is_support_turn) applier.apply(i);

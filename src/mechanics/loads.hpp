@@ -4,13 +4,13 @@
 
 namespace incise {
 
-/// Turns model.constraints into fixed axes, prescribed displacements, support planes and dead loads. Throws CaseError
-/// naming the constraint
-/// ("specimen.constraints[2].where") that selects nothing, has a bad number, or contradicts an earlier one.
+/// Turns model.constraints and gravity into fixed axes, prescribed displacements, supports and dead loads.
+/// @throws CaseError naming a constraint ("specimen.constraints[2].where") that selects nothing, has a bad number or an
+/// unusable holder, or contradicts an earlier one.
 void apply_constraints(TissueModel& model, const Vec3& gravity_mm_s2);
 
-/// Throws CaseError when the body could still move as a whole: the fixed axes of its vertices leave one of the six
-/// rigid motions free.
+/// Checks that the body cannot move as a whole. @throws CaseError if the fixed axes leave one of the six rigid motions
+/// free; supports do not count.
 void require_no_rigid_motion(const TissueModel& model);
 
 }  // namespace incise

@@ -40,7 +40,7 @@ double norm(std::span<const Vec3> vectors, std::span<const Vec3> is_free) {
 
 struct MotionWorkspace::Data {
   BlockMatrix matrix;
-  std::optional<BlockMatrix> start_stiffness;  // for damping, where Newton changes the other one
+  std::optional<BlockMatrix> start_stiffness;  // K₀ for damping; Newton overwrites `matrix`
   TangentSolver solver;
   Points right, increment, moved, product;
   std::vector<std::uint8_t> loose;
@@ -69,7 +69,7 @@ Motion motion_at_rest(const TissueModel& model, const TissueState& state) {
 
 namespace {
 
-/// One step. `tissue` is the trial state; the motion itself changes only at the end.
+/// One step. `tissue_` is the trial state; the motion itself changes only in finish().
 class Step {
  public:
   Step(const TissueModel& model, const Motion& motion, const MotionSettings& settings, MotionWorkspace::Data& scratch,
@@ -124,7 +124,7 @@ class Step {
     return report;
   }
 
-  /// The motion at the end of the step.
+  /// Stores the end of the step in `motion`.
   void finish(Motion& motion) {
     for (std::size_t v = 0; v < free_.size(); ++v) {
       motion.velocities_mm_s[v] = (tissue_.positions[v] - motion.tissue.positions[v]) / settings_.step_s;
@@ -135,7 +135,7 @@ class Step {
   }
 
  private:
-  /// Right side of the step's equation at the trial positions, and its matrix M (1/h² + α/h) + K + (β/h) K₀.
+  /// Computes the step's right side at the trial positions, and its matrix M (1/h² + α/h) + K + (β/h) K₀.
   void find_forces(Tangent tangent, bool is_first) {
     Points& right = scratch_.right;
     right = model_.dead_load_mn;
@@ -147,13 +147,13 @@ class Step {
     add_viscous_response(model_, tissue_, settings_.step_s, right, &scratch_.matrix, tangent, workers_);
     add_support_response(model_, tissue_, right, &scratch_.matrix);
     if (settings_.has_inertia) add_inertia();
-    if (is_first && is_carried_) {  // held vertices take the tissue with them, by the linear response
+    if (is_first && is_carried_) {  // held vertices carry the tissue along, by the linear response
       multiply(scratch_.matrix, scratch_.moved, scratch_.product, workers_);
       for (std::size_t v = 0; v < right.size(); ++v) right[v] -= scratch_.product[v];
     }
   }
 
-  /// β K₀ (x - x₀)/h. In the first iteration x = x₀ and K₀ is the matrix at hand.
+  /// Adds the damping β K₀ (x - x₀)/h. In the first iteration x = x₀, and K₀ is the matrix assembled so far.
   void add_damping(bool is_first) {
     if (settings_.rayleigh_beta == 0.0) return;
     const double share = settings_.rayleigh_beta / settings_.step_s;
@@ -163,7 +163,7 @@ class Step {
       workers_.for_each(values.size(), kValuesPerChunk, [&](std::size_t i) { values[i] *= 1.0 + share; });
       return;
     }
-    Points& way = scratch_.increment;  // not in use between two systems
+    Points& way = scratch_.increment;  // free between two systems
     for (std::size_t v = 0; v < way.size(); ++v) way[v] = tissue_.positions[v] - motion_.tissue.positions[v];
     multiply(*scratch_.start_stiffness, way, scratch_.product, workers_);
     for (std::size_t v = 0; v < way.size(); ++v) scratch_.right[v] -= share * scratch_.product[v];
@@ -182,14 +182,14 @@ class Step {
     }
   }
 
-  /// A force far below any that deforms the body but above rounding: what a step's residual is compared with when
-  /// hardly anything moves.
+  /// Returns the lower limit of the scale for residuals, mN: a force far below any that deforms the body, but above
+  /// rounding.
   [[nodiscard]] double least_scale() const {
     const double size = bounding_box(model_.mesh.vertices).diagonal().norm();
     return 1e-6 * model_.material.youngs_modulus_kpa * size * size;
   }
 
-  /// Solves for the increment; where the exact tangent is not positive definite, with the projected one.
+  /// Solves for the increment; if the exact tangent is not positive definite, with the projected one.
   bool find_increment(bool is_first, double scale_over_size) {
     const double tolerance = is_first ? 0.5 * settings_.relative_tolerance
                                       : std::min(0.5, 0.5 * settings_.relative_tolerance * scale_over_size);

@@ -12,13 +12,13 @@ namespace incise {
 /// Aggregates that one thread takes at a time in a sweep of conjugate gradients.
 inline constexpr std::size_t kAggregatesPerChunk = 2;
 
-/// Sums of the chunks, added in their order: the same bits at any thread count.
+/// Adds the sums of the chunks in their order: same bits at any thread count.
 inline double sum_of(const std::vector<double>& of_chunks) {
   return std::accumulate(of_chunks.begin(), of_chunks.end(), 0.0);
 }
 
-/// Preconditioned conjugate gradients from x = start · p: `sweeps` owns the vectors, with r = b and x = 0 before, p and
-/// A p those of a first direction (0: none), and does
+/// Preconditioned conjugate gradients from x = start · p. `sweeps` owns the vectors, initially r = b and x = 0, with p
+/// and A p those of a first direction (0: none), and provides
 ///   move(alpha):    x += alpha p, r -= alpha A p; returns |r|
 ///   precondition(): prepares M⁻¹ r; returns r · M⁻¹ r
 ///   turn(beta):     p = M⁻¹ r + beta p

@@ -7,10 +7,11 @@ namespace {
 
 constexpr int kMaxNewton = 8;
 constexpr double kLastUpdate =
-    1e-14;  // squared angle below which the next error is beneath rounding (quadratic convergence)
+    1e-14;  // squared angle below which the next error is below rounding (quadratic convergence)
 constexpr double kLeastCurvature = 0.05;  // det(tr S I - S), 8 at rest: below it two stretches nearly cancel
 
-/// Largest eigenvector of the 4 x 4 form q -> tr(R(q)ᵀ F) of the unit quaternion q = (w, v).
+/// Returns the rotation of the unit quaternion q = (w, v) that maximises tr(R(q)ᵀ F): the eigenvector of the largest
+/// eigenvalue of this 4 x 4 quadratic form.
 Mat3 by_quaternion(const Mat3& f) {
   const double trace = f.trace();
   const Vec3 axial(f(2, 1) - f(1, 2), f(0, 2) - f(2, 0), f(1, 0) - f(0, 1));
@@ -24,7 +25,7 @@ Mat3 by_quaternion(const Mat3& f) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
-/// R times the rotation of the quaternion (1, w/2), normalised: Cayley's map of w.
+/// Returns R times the Cayley map of w: the rotation of the normalised quaternion (1, w/2).
 Mat3 turned(const Mat3& r, const Vec3& w) {
   const double x = 0.5 * w[0];
   const double y = 0.5 * w[1];

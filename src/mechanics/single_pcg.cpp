@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint8_t kRowChanged = 1;
 constexpr std::uint8_t kScaleChanged = 2;
 
-/// The power of two at or above the root; 1 for a row of zeros.
+/// Returns the power of two at or above the square root; 1 for a row of zeros.
 float scale_for(double largest_on_diagonal) {
   if (!(largest_on_diagonal > 0.0)) return 1.0F;
   int exponent = 0;
@@ -71,8 +71,8 @@ void SinglePcg::for_aggregates(Workers& workers, const Body& body) const {
   workers.for_chunks(start_.size() - 1, kAggregatesPerChunk, body);
 }
 
-/// The scales of the rows that changed, and which rows have to be rounded anew: those, and all that share a block with
-/// one whose scale changed.
+/// Updates the scales of the changed rows and flags the rows to round again: the changed ones, and all that share a
+/// block with a row whose scale changed.
 void SinglePcg::rescale(const BlockMatrix& matrix, std::span<const std::uint8_t> changed_rows, Workers& workers) {
   std::fill(is_stale_.begin(), is_stale_.end(), std::uint8_t{0});
   std::atomic<bool> has_new_scale = false;
@@ -101,9 +101,9 @@ void SinglePcg::rescale(const BlockMatrix& matrix, std::span<const std::uint8_t>
   });
 }
 
-/// What rounding took from the row goes to the diagonal block, made symmetric: where neighbours move alike no energy is
-/// lost or made up, and soft modes of a body keep their stiffness. @returns whether all numbers are as small as they
-/// have to be.
+/// Rounds one row and adds its rounding errors, made symmetric, to the diagonal block: where neighbours move alike, no
+/// energy is lost or created, so soft modes of a body keep their stiffness. @returns whether all numbers are within the
+/// bound of a positive semi-definite matrix.
 bool SinglePcg::round_row(const BlockMatrix& matrix, std::size_t row) {
   bool is_small = true;
   std::array<float, 9> left{};
@@ -155,7 +155,7 @@ PcgVectors SinglePcg::vectors() {
           arm_.data(), is_free_.data(), scaled_p_.data(), scale_.data(), left_.data()};
 }
 
-/// r = b, x = q = 0; p = 0, or the last solution on the axes that are free now, and s p.
+/// Sets r = b and x = q = 0; p = 0, or the last solution on the axes that are free now; and s p.
 void SinglePcg::load(std::span<const Vec3> b, bool keeps_last, Workers& workers) {
   for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
     const auto first = static_cast<std::size_t>(start_[begin]);
@@ -172,7 +172,7 @@ void SinglePcg::load(std::span<const Vec3> b, bool keeps_last, Workers& workers)
   });
 }
 
-/// How much of the direction p, the last solution, lowers the energy most: p · b / p · A p.
+/// Returns the factor by which p, the last solution, lowers the energy most: p · b / p · A p; 0 if p is useless.
 double SinglePcg::share_of_last(Workers& workers) {
   const double pq = multiply(workers);
   for_aggregates(workers, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -200,7 +200,7 @@ void SinglePcg::move(float alpha, Workers& workers) {
   });
 }
 
-/// The coarse part of M r; returns r · M r.
+/// Computes the coarse part of M⁻¹ r; returns r · M⁻¹ r.
 double SinglePcg::precondition(Workers& workers) {
   const std::size_t n = motion_.size();
   if (is_coarse_dense_) {

@@ -15,16 +15,15 @@
 
 namespace incise {
 
-/// The iteration of TwoLevelPcg in single precision, with a matrix of 16 bits a number: it is the bytes that take the
-/// time. Block (i, j) is kept as whole numbers of s_i s_j / kWholeOne, where s_i is the power of two at or above the
-/// root of the largest number on the diagonal of block (i, i): no number of a positive semi-definite matrix is larger
-/// than s_i s_j. Vertices are renumbered so that those of an aggregate stand together. What it can reach:
-/// Precision::Single.
+/// Iteration of TwoLevelPcg in single precision with a matrix of 16 bits per number, because memory traffic limits the
+/// speed. Block (i, j) is stored as integers in units of s_i s_j / kWholeOne. s_i is the power of two at or above the
+/// square root of the largest number on the diagonal of block (i, i): no number of a positive semi-definite matrix
+/// exceeds s_i s_j. Vertices are renumbered to keep those of an aggregate together. Accuracy: see Precision::Single.
 class SinglePcg {
  public:
   SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSpace& coarse);
 
-  /// Rounds the rows of the matrix that changed (all, where no flags are given), the inverse of their diagonal blocks
+  /// Rounds the changed rows of the matrix (all rows if changed_rows is empty), the inverses of their diagonal blocks
   /// and, with `has_new_coarse`, the coarse inverse.
   void update(const BlockMatrix& matrix, std::span<const Mat3> inverse_diagonal, const CoarseSpace& coarse,
               bool has_new_coarse, std::span<const std::uint8_t> changed_rows, Workers& workers);
@@ -51,15 +50,15 @@ class SinglePcg {
   std::vector<std::int32_t> source_slot_;  ///< own slot -> slot of the pattern
   std::vector<std::int16_t> values_;       ///< 9 per own slot, and room beyond the end
   std::vector<float> scale_;               ///< s, per vertex
-  std::vector<float> left_;  ///< 9 per vertex: what rounding left of the row, in units of s_i s_i / kWholeOne
-  std::vector<std::uint8_t> is_stale_;       ///< per vertex: its row is to be rounded anew
+  std::vector<float> left_;  ///< 9 per vertex: rounding errors of the row, summed, in units of s_i s_i / kWholeOne
+  std::vector<std::uint8_t> is_stale_;       ///< per vertex: its row must be rounded again
   std::atomic<bool> is_indefinite_ = false;  ///< a number was too large for a positive semi-definite matrix
   std::vector<float> inverse_diagonal_;      ///< 12 per vertex: three columns of four
   std::vector<float> arm_, is_free_;         ///< 4 per vertex
   bool is_coarse_dense_;
-  bool has_last_ = false;  ///< x_ is the solution of the solve before, with the same coarse matrix
-  std::vector<float> coarse_;                        ///< n x n, where the coarse inverse is dense
-  CoarseCycle<float> cycle_;                         ///< where it is not
+  bool has_last_ = false;  ///< x_ is the converged solution of the last solve, with the same coarse matrix
+  std::vector<float> coarse_;                        ///< n x n, if the coarse inverse is dense
+  CoarseCycle<float> cycle_;                         ///< otherwise
   std::vector<float> x_, r_, z_, p_, q_, scaled_p_;  ///< 4 per vertex
   std::vector<float> restricted_, motion_;           ///< n
   std::vector<double> partial_rr_, partial_rz_, partial_pq_;

@@ -15,7 +15,7 @@ struct SparseCholesky::Data {
   cholmod_common common{};
   cholmod_sparse* lower = nullptr;  ///< 3N x 3N, lower triangle by columns
   cholmod_factor* factor = nullptr;
-  std::vector<std::int64_t> source;  ///< per nonzero of `lower`: where it stands in BlockMatrix::values
+  std::vector<std::int64_t> source;  ///< per nonzero of `lower`: its index in BlockMatrix::values
   bool is_factored = false;
   mutable cholmod_dense* solution = nullptr;  // work space of solve, kept between calls
   mutable cholmod_dense* work_y = nullptr;

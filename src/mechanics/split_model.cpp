@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-/// Appends to a list with one item per original, or none, those of the copies.
+/// Appends the items of the copies to a list with one item per original; leaves an empty list empty.
 template <class T, class Originals>
 void add_copies(std::vector<T>& items, const Originals& originals) {
   if (items.empty()) return;
@@ -17,7 +17,7 @@ void add_copies(std::vector<T>& items, const Originals& originals) {
   for (const auto original : originals) items.push_back(items[original.index()]);
 }
 
-/// The tissue about each vertex of the split mesh, mm³: a quarter of what its tets hold.
+/// Returns the volume of tissue around each vertex of the split mesh, mm³: a quarter of the tissue in its tets.
 std::vector<double> volumes_about(const TissueModel& model, const MeshSplits& splits) {
   const std::size_t count = model.mesh.tets.size(), whole = count - splits.copies.size();
   std::vector<double> volumes(model.mesh.vertices.size(), 0.0);
@@ -48,7 +48,7 @@ TissueModel split_model(const TissueModel& whole, const MeshSplits& splits) {
 
   const std::vector<double> volume_mm3 = volumes_about(model, splits);
   const double density = units::kg_mm3_from_kg_m3(model.material.density_kg_m3);
-  std::map<VertexId, std::vector<VertexId>> families;  // of a vertex that has copies: itself and these
+  std::map<VertexId, std::vector<VertexId>> families;  // of each vertex that has copies: itself and its copies
   const std::size_t whole_count = whole.mesh.vertices.size();
   const std::vector<VertexId> originals = whole_vertices(whole_count, splits);
   for (std::size_t v = whole_count; v < originals.size(); ++v) {
@@ -66,7 +66,7 @@ TissueModel split_model(const TissueModel& whole, const MeshSplits& splits) {
       model.vertex_mass_kg[v.index()] = density * volume_mm3[v.index()];
     }
   }
-  // A tet's mass goes to its corners: where one of its parts has a corner of its own, the others' corners have less.
+  // Corners of split tets may carry less mass, even if they have no copy: each part gives its mass to its own corners.
   for (const auto* list : {&splits.changed, &splits.copies}) {
     for (const SplitTet& tet : *list) {
       for (const VertexId v : tet.corners) model.vertex_mass_kg[v.index()] = density * volume_mm3[v.index()];

@@ -17,23 +17,24 @@ namespace {
 
 constexpr int kMaxPerLoadStep = 20;
 constexpr int kMaxContactChanges =
-    8;  // steps per load step that may raise the energy because they change what touches a support
+    8;  // Newton steps per load step that may raise the energy because they change the contact with a support
 constexpr int kMaxHalvings = 7;  // of a Newton step in the line search
 constexpr double kLeastLoadStep = 1.0 / 64.0;
-constexpr double kGoodDecrease = 0.7;  // of the residual: accepted without asking the energy
+constexpr double kGoodDecrease = 0.7;  // of the residual: accepted without evaluating the energy
 constexpr double kArmijo = 1e-4;
-constexpr double kIntermediateTolerance = 1e-2;  // on the way, equilibrium need not be exact
+constexpr double kIntermediateTolerance = 1e-2;  // equilibrium of an intermediate load step need not be exact
 
-// How well a system is solved by conjugate gradients, relative to its right side. The first, which carries the held
-// vertices, need only be as good as linear response is; later ones follow the last decrease (Eisenstat and Walker 1996,
-// choice 2 with exponent 2), so that convergence stays quadratic, but no better than the final tolerance asks.
+// Tolerances of conjugate gradients, relative to the right side. The first system of a load step, which carries the
+// held vertices, need only be as accurate as the linear response. Later tolerances follow the last decrease of the
+// residual (Eisenstat and Walker 1996, choice 2 with exponent 2), so convergence stays quadratic, but are no tighter
+// than the final tolerance requires.
 constexpr double kCarryTolerance = 1e-3;
 constexpr double kLoosestTolerance = 0.03;
 constexpr double kForcing = 0.9;
-constexpr double kFinalShare = 0.3;  // of the wanted residual
+constexpr double kFinalShare = 0.3;  // of the required residual
 constexpr int kMaxCgIterations = 4000;
 
-/// Newton's method for one model. The state moves; everything else is scratch.
+/// Newton's method for one model. Changes the state and the result; everything else is scratch.
 class Equilibrium {
  public:
   Equilibrium(const TissueModel& model, const StaticSettings& settings, Workers& workers, Monitor& monitor,
@@ -78,7 +79,7 @@ class Equilibrium {
       state_ = before;
       size *= 0.5;
     }
-    // Smaller load steps would end in the same equilibrium: with this law it is the strain, not the way to it, that
+    // Smaller load steps would end in the same equilibrium: with these laws the strain itself, not the path to it,
     // inverts a sliver.
     return count_inverted() > 0 ? Outcome::ElementInverted : Outcome::Success;
   }
@@ -91,7 +92,7 @@ class Equilibrium {
     }
     return count;
   }
-  /// What was chosen and why, for a person.
+  /// Returns the chosen solver and the reason, for a person.
   [[nodiscard]] std::string explanation() const {
     return fmt::format(
         "Newton with the exact tangent ({} of {} steps with the projected one, where that was not positive definite), "
@@ -101,13 +102,13 @@ class Equilibrium {
   [[nodiscard]] int linear_iterations() const { return solver_.cg_iterations(); }
 
  private:
-  /// Never takes anything back, not even when a load step is tried again at half its size.
+  /// Reports progress that never decreases, even if a load step is repeated at half its size.
   void report_progress(double fraction) {
     progress_ = std::max(progress_, std::min(fraction, 1.0));
     monitor_.progress("stretching", progress_);
   }
 
-  /// After the residual of one iteration is known: how far it has come on a logarithmic scale from 1 to the tolerance.
+  /// Reports the residual of one iteration; progress within a load step is logarithmic, from 1 to the tolerance.
   void report_iteration(double done, double fraction, double tolerance) {
     const double share = std::clamp(std::log(result_.relative_residual) / std::log(tolerance), 0.0, 1.0);
     report_progress(done + share * (fraction - done));
@@ -116,14 +117,14 @@ class Equilibrium {
                                  result_.iterations, 100.0 * fraction, result_.relative_residual));
   }
 
-  /// Loads at a fraction of the way: what was out of balance at the start is taken away at 0 and all there at 1.
+  /// Sets the loads at a load fraction: the imbalance at the start is cancelled at 0 and fully present at 1.
   void set_load(double fraction) {
     for (std::size_t v = 0; v < load_.size(); ++v) {
       load_[v] = model_.dead_load_mn[v] - (1.0 - fraction) * out_of_balance_[v];
     }
   }
 
-  /// Sum of all forces at the current positions; with `tangent` also fills matrix_.
+  /// Returns the sum of all forces at the current positions; with `tangent` also fills matrix_.
   const Points& assemble(const Tangent* tangent) {
     forces_ = load_;
     BlockMatrix* stiffness = tangent != nullptr ? &matrix_ : nullptr;
@@ -140,7 +141,7 @@ class Equilibrium {
     return std::sqrt(squared);
   }
 
-  /// What the residual is compared with: the reactions, or the loads, or a force far below any that deforms the body.
+  /// Returns the scale of the residual: the largest of reactions, loads, and a force too small to deform the body.
   [[nodiscard]] double scale() const {
     double reactions = 0.0;
     double loads = 0.0;
@@ -161,7 +162,7 @@ class Equilibrium {
     return elastic_energy_uj(model_, state_) + support_energy_uj(model_, state_) - work;
   }
 
-  /// Distance that held axes still have to go; zero elsewhere. @returns whether there is any.
+  /// Finds the distance by which held axes must still move; zero elsewhere. @returns whether any must.
   bool find_jump(double fraction) {
     bool is_any = false;
     for (std::size_t v = 0; v < jump_.size(); ++v) {
@@ -177,15 +178,15 @@ class Equilibrium {
     return is_any;
   }
 
-  /// Newton at a fixed load fraction. The first step carries the held vertices to their places and the tissue with
-  /// them, by the linear response: moving the boundary alone would crush its first row of tets.
+  /// Runs Newton's method at a fixed load fraction. The first step moves the held vertices to their places, and the
+  /// tissue with them by the linear response: moving the boundary alone would crush its first row of tets.
   Outcome advance_to(double done, double fraction) {
     set_load(fraction);
     const double tolerance =
         fraction < 1.0 ? std::max(kIntermediateTolerance, settings_.relative_tolerance) : settings_.relative_tolerance;
     bool must_jump = find_jump(fraction);
     contact_changes_ = 0;
-    double before = 0.0;  // residual of the iteration before, 0: there was none
+    double before = 0.0;  // residual of the previous iteration; 0: none
     for (int i = 0; i < kMaxPerLoadStep; ++i) {
       if (monitor_.is_cancelled()) return Outcome::Cancelled;
       Tangent tangent = Tangent::Exact;
@@ -214,13 +215,13 @@ class Equilibrium {
     return Outcome::NotConverged;
   }
 
-  /// Tolerance of the next linear system, given the residuals now and before it and the one that is enough.
+  /// Returns the tolerance of the next linear system, given the current, the previous and the required residual.
   static double forcing(double now, double before, double enough) {
     const double ratio = before > 0.0 ? now / before : 1.0;
     return std::clamp(kForcing * ratio * ratio, std::min(enough / now, kLoosestTolerance), kLoosestTolerance);
   }
 
-  /// Solves for step_ with the exact tangent, or with the projected one where that is not positive definite.
+  /// Solves for step_ with the exact tangent, or with the projected one if that is not positive definite.
   bool find_step(bool must_jump, double tolerance) {
     for (const Tangent tangent : {Tangent::Exact, Tangent::Projected}) {
       if (tangent == Tangent::Projected) {
@@ -253,8 +254,8 @@ class Equilibrium {
       assemble(nullptr);
       if (residual() <= kGoodDecrease * before) return true;
       if (potential() <= base_potential + kArmijo * length * slope) return true;
-      // Tissue that falls onto a support overshoots and is put right by the next step, which knows what touches;
-      // creeping up to each new contact in turn would take far longer.
+      // Tissue that falls onto a support overshoots, and the next step, which knows the contacts, corrects it.
+      // Approaching each new contact in turn would take far longer.
       if (i == 0 && contact_changes_ < kMaxContactChanges && support_contacts(model_, state_) != base_contacts) {
         ++contact_changes_;
         return true;
@@ -275,7 +276,7 @@ class Equilibrium {
   TangentSolver solver_;
   Points free_;  // 1 along axes that may move, 0 along held ones and at vertices without a live tet
   Points forces_, right_, step_, jump_, load_, out_of_balance_, start_positions_;
-  std::vector<std::uint8_t> loose_;  // vertices without a free axis: those of carved tets are among them
+  std::vector<std::uint8_t> loose_;  // flags vertices without a free axis, including those of carved tets only
   double progress_ = 0.0;
   int projected_ = 0;
   int contact_changes_ = 0;
@@ -290,7 +291,7 @@ void check(const StaticSettings& settings) {
                  fmt::format("expected first_load_fraction in (0, 1], found {}", settings.first_load_fraction));
 }
 
-/// One warning for each support that tissue has sunk into deeper than its stiffness is meant to allow.
+/// Warns about each support into which tissue has sunk deeper than the support's stiffness is meant to allow.
 void warn_of_penetration(const TissueModel& model, const TissueState& state, Monitor& monitor) {
   for (const SupportPlane& support : model.supports) {
     const double depth = penetration_mm(support, state);

@@ -12,7 +12,7 @@
 namespace incise {
 namespace {
 
-constexpr double kTurnRad = 2e-2;  // below it a tet's blocks stay: docs/models/solvers.md
+constexpr double kTurnRad = 2e-2;  // a tet's blocks are kept up to this turn: docs/models/solvers.md
 constexpr std::size_t kBatchesPerChunk = 64;
 
 }  // namespace
@@ -25,15 +25,15 @@ struct StepStiffness::Data {
   };
 
   BlockMatrix matrix;
-  std::vector<double> rotations;  // those with which tets were assembled, in the order of the kernels' batches
+  std::vector<double> rotations;  // with which tets were assembled, in the order of the kernels' batches
   std::vector<double> fill;       // likewise; 0: not in the matrix
   std::vector<std::uint8_t> is_changed;
-  std::vector<std::uint8_t> next_changed;  // rows that differ again when what was lent is taken back
+  std::vector<std::uint8_t> next_changed;  // rows that change again when lent blocks are restored
   std::vector<Lent> lent;
   std::vector<std::uint8_t> is_lent;        // per block
   std::vector<std::int32_t> support_slots;  // diagonal blocks of vertices that a support may push
-  std::vector<Block> support_before;        // their blocks of the step before, support included, not yet held
-  std::vector<std::uint8_t> is_supported;   // per row: has one of them
+  std::vector<Block> support_before;        // these blocks in the previous step, with support, before holding
+  std::vector<std::uint8_t> is_supported;   // per row: its diagonal block is one of support_slots
   std::vector<std::uint8_t> held;
   double step_s = 0.0;
   bool had_viscosity = false;
@@ -124,7 +124,7 @@ void StepStiffness::Data::assemble_all(const TissueModel& model, TissueState& st
   });
 }
 
-/// Assembles what changed.
+/// Reassembles only what changed.
 void StepStiffness::Data::renew(const TissueModel& model, TissueState& state, std::span<Vec3> forces,
                                 Workers& workers) {
   is_changed.swap(next_changed);
@@ -174,13 +174,13 @@ void StepStiffness::lend(const TissueModel& model, TetId tet) {
 void StepStiffness::hold(const TissueModel& model, std::span<Vec3> right_side, std::span<const std::uint8_t> also_held,
                          Workers& workers) {
   Data& d = *data_;
-  // Of all rows first: a row's columns are held by other rows' flags.
+  // Flags of all rows first: the columns of a row depend on the flags of other rows.
   workers.for_each(d.held.size(), kRowsPerChunk, [&](std::size_t v) {
     if (d.is_changed[v] != 0) d.held[v] = held_axes(model, d.matrix, also_held, v);
     hold_right_side(d.held[v], right_side[v]);
   });
   workers.for_each(d.held.size(), kRowsPerChunk, [&](std::size_t v) {
-    // What was lent was taken back to a block that is not held: where it is the same sum again, it has to be held
+    // Lent blocks are restored to their values before holding. Even if the new sum is the same, they must be held
     // again.
     if (d.is_changed[v] != 0 || d.is_supported[v] != 0) hold_row(d.matrix, d.held, v);
   });

@@ -8,8 +8,8 @@
 namespace incise {
 namespace {
 
-/// P Fᵀ / J, Cauchy's stress; or P Rᵀ, the corotational law's own stress in the turned frame, which takes strains as
-/// small and areas as unchanged. An inverted tet has no Cauchy stress: P Rᵀ stands in.
+/// Returns the Cauchy stress P Fᵀ / J; for the corotational law P Rᵀ, its stress in the rotated frame, for small
+/// strains and unchanged areas. P Rᵀ also serves for inverted tets, which have no Cauchy stress.
 Mat3 stress_of(MaterialModel model, const Mat3& piola, const Mat3& f, const Mat3& guess) {
   const double j = f.determinant();
   if (model == MaterialModel::StableNeoHookean && j > 0.0) return piola * f.transpose() / j;

@@ -23,7 +23,7 @@ void add_support_response(const TissueModel& model, const TissueState& state, st
       const std::size_t v = support.vertices[i].index();
       const SupportGap at = support_gap(support, state.positions[v]);
       if (!(at.gap_mm <= 0.0))
-        continue;  // clear of the surface: it never pulls; at the surface it resists from the first step on
+        continue;  // clear of the surface: a support never pulls. At the surface it resists from the first step on.
       forces[v] -= support.stiffness[i] * at.gap_mm * at.normal;
       if (stiffness == nullptr) continue;
       Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(stiffness->block(model.pattern->diagonal[v])) +=

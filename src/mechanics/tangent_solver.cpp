@@ -9,8 +9,8 @@
 namespace incise {
 namespace {
 
-/// The coarse matrix is made anew when a system took this many times the iterations per digit of the first after it was
-/// made.
+/// The coarse matrix is rebuilt after a system that took this many times the iterations per digit of the first system
+/// after the last rebuild.
 constexpr double kStaleGrowth = 1.3;
 
 }  // namespace
@@ -32,7 +32,7 @@ TangentSolver::End TangentSolver::solve_by_cg(const BlockMatrix& matrix, std::sp
   const bool is_fresh = is_coarse_stale_;
   try {
     pcg_->update(matrix, is_fresh, workers);
-  } catch (const InvalidArgument&) {  // a block of the diagonal or the coarse matrix shows it before any iteration does
+  } catch (const InvalidArgument&) {  // a diagonal block or the coarse matrix is not positive definite
     return End::NotPositiveDefinite;
   }
   PcgSettings settings;

@@ -10,11 +10,11 @@
 
 namespace incise {
 
-/// Bodies with more vertices than this are left to conjugate gradients. Measured: docs/records/solvers.md.
+/// LinearSolver::Automatic uses conjugate gradients for bodies with more vertices. Measured: docs/records/solvers.md.
 inline constexpr std::size_t kMostVerticesForCholesky = 3000;
 
-/// The linear solver behind Newton's method: chooses one, keeps what can be kept from system to system, and counts.
-/// Solvers are made when they are first needed.
+/// The linear solver behind Newton's method: chooses a solver, reuses data from system to system, and counts
+/// iterations. Solvers are constructed when first needed.
 class TangentSolver {
  public:
   TangentSolver(const TissueModel& model, LinearSolver choice, int max_cg_iterations);
@@ -22,13 +22,12 @@ class TangentSolver {
   enum class End { Solved, NotPositiveDefinite, NotConverged };
   /// Solves matrix * x = b to |residual| <= tolerance |b| (by Cholesky: to rounding).
   End solve(const BlockMatrix& matrix, std::span<const Vec3> b, std::span<Vec3> x, double tolerance, Workers& workers);
-  /// Forgets what the preconditioner kept of earlier matrices, so that the next solution depends on its own system
-  /// only.
+  /// Discards what the preconditioner kept of earlier matrices: the next solution depends only on its own system.
   void forget();
 
   [[nodiscard]] int cg_iterations() const { return cg_iterations_; }
   [[nodiscard]] int factorisations() const { return factorisations_; }
-  /// What was chosen and why, and what became of it; for a person.
+  /// Returns the chosen solver, the reason, and how it performed; for a person.
   [[nodiscard]] std::string explanation() const;
 
  private:

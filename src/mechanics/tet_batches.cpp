@@ -12,9 +12,9 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kTetsPerRun = 504;  // 63 batches: work for some 50 µs, and few vertices shared with other runs
+constexpr std::size_t kTetsPerRun = 504;  // 63 batches: about 50 µs of work, and few vertices shared with other runs
 
-/// Tets in runs of nearly kTetsPerRun that lie close together.
+/// Groups tets that lie close together into runs of nearly kTetsPerRun.
 Aggregates group_tets(const TissueModel& model) {
   Points centroids(model.mesh.tets.size());
   for (std::size_t t = 0; t < centroids.size(); ++t) {
@@ -25,7 +25,7 @@ Aggregates group_tets(const TissueModel& model) {
   return bisect(centroids, kTetsPerRun);
 }
 
-/// The first colour that no run with a common vertex has, run by run.
+/// Gives each run in turn the first colour that no run with a common vertex has.
 std::vector<int> color_runs(const TissueModel& model, const Aggregates& runs) {
   std::vector<int> color(runs.count(), -1);
   std::vector<char> is_taken;
@@ -68,8 +68,8 @@ void put_tet(const TissueModel& model, std::size_t tet, TetBatch& batch, std::si
   batch.tets[lane] = static_cast<std::int32_t>(tet);
 }
 
-/// Neighbours in the run go to one lane of successive batches, not to the lanes of one batch: those would add to the
-/// same blocks one right after the other, and each would wait for the store before it.
+/// Appends a run. Neighbours go to one lane of successive batches, not to the lanes of one batch: those add to blocks
+/// one right after another, and a block that two of them share would have to wait for its last store.
 void add_run(const TissueModel& model, std::span<const std::int32_t> tets, TetBatches& result) {
   const std::size_t first = result.batches.size();
   const std::size_t count = (tets.size() + kBatchTets - 1) / kBatchTets;
@@ -84,7 +84,7 @@ void add_run(const TissueModel& model, std::span<const std::int32_t> tets, TetBa
 
 using Run = std::vector<std::int32_t>;  // tets
 
-/// @param runs  those of one colour together. @param color_start  colours + 1, into the runs.
+/// @param runs  sorted by colour.  @param color_start  colours + 1, into the runs.
 std::shared_ptr<const TetBatches> batches_of(const TissueModel& model, const std::vector<Run>& runs,
                                              std::vector<std::int32_t> color_start) {
   auto result = std::make_shared<TetBatches>();
@@ -101,7 +101,7 @@ std::shared_ptr<const TetBatches> batches_of(const TissueModel& model, const std
 std::vector<std::int32_t> transposed_slots(const BlockPattern& pattern) {
   std::vector<std::int32_t> mirror(pattern.blocks());
   std::vector<std::int32_t> next(pattern.row_start.begin(), pattern.row_start.end() - 1);
-  // Rows ascend, so the blocks of one column are met in the order in which its row lists them.
+  // Rows ascend, so the blocks of a column are visited in the order in which the row of the same number lists them.
   for (std::size_t row = 0; row < pattern.rows(); ++row) {
     for (auto slot = pattern.row_start[row]; slot < pattern.row_start[row + 1]; ++slot) {
       const std::int32_t column = pattern.column[static_cast<std::size_t>(slot)];
@@ -137,7 +137,7 @@ std::shared_ptr<const TetBatches> make_split_batches(const TissueModel& model, c
   for (std::size_t run = 0; run < runs.size(); ++run) {
     const auto first = static_cast<std::size_t>(before.run_start[run]);
     const auto last = static_cast<std::size_t>(before.run_start[run + 1]);
-    for (std::size_t lane = 0; lane < kBatchTets; ++lane) {  // the order in which add_run took them
+    for (std::size_t lane = 0; lane < kBatchTets; ++lane) {  // the order of add_run
       for (std::size_t batch = first; batch < last; ++batch) {
         const std::int32_t tet = before.batches[batch].tets[lane];
         if (tet < 0) continue;

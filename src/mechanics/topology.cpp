@@ -25,13 +25,13 @@ void list_tets_of_vertices(TissueModel& model) {
   }
 }
 
-/// Rows that another pattern has, and the vertices whose row is not of it.
+/// A pattern to copy rows from, and the vertices whose rows must be built.
 struct KnownRows {
   const BlockPattern& pattern;
   const std::vector<std::uint8_t>& is_new;
 };
 
-/// The pattern whose row v holds what `list_neighbours(v, list)` appends, in any order, and v itself.
+/// Builds the pattern whose row v contains v and everything that `list_neighbours(v, list)` appends, in any order.
 template <class ListNeighbours>
 std::shared_ptr<const BlockPattern> make_pattern(std::size_t count, const ListNeighbours& list_neighbours,
                                                  const KnownRows* known = nullptr) {
@@ -83,7 +83,7 @@ std::shared_ptr<const BlockPattern> make_stars_of_stars(const BlockPattern& star
   });
 }
 
-/// Where the blocks of the pairs of corners of a tet stand: block (a, b) is one of row a.
+/// Finds the slots of the blocks (a, b) of a tet for one corner a; they lie in the row of that corner.
 void find_slots(TissueModel& model, std::size_t tet, std::size_t a) {
   const std::vector<std::int32_t>& column = model.pattern->column;
   const std::size_t row = model.mesh.tets[tet][a].index();
@@ -124,7 +124,7 @@ void add_split_topology(TissueModel& model, const TissueModel& whole, const Mesh
   const KnownRows stars{*whole.stars, is_new};
   model.stars = make_stars(model, &stars);
   model.pattern = pattern_for(model);
-  const bool keeps_rows = model.pattern == model.stars;  // else rows farther away are others, too
+  const bool keeps_rows = model.pattern == model.stars;  // otherwise rows farther from the splits differ too
   model.tet_slots.resize(model.mesh.tets.size());
   for (std::size_t t = 0; t < model.mesh.tets.size(); ++t) {
     for (std::size_t a = 0; a < 4; ++a) {

@@ -6,8 +6,8 @@ namespace incise {
 
 /// Fills the arrays of `model` that follow from its tets alone: vertex_tets, stars, pattern and tet_slots.
 void add_topology(TissueModel& model);
-/// As add_topology, for a model whose mesh is split_mesh of that of `whole`: rows of the matrix are taken from there
-/// except about splits. O(M); where volumes are averaged, all rows are made anew.
+/// As add_topology, for a model on the split mesh of `whole`: copies the rows of the matrix from there, except around
+/// splits. O(M). With averaged volume all rows are built again.
 void add_split_topology(TissueModel& model, const TissueModel& whole, const MeshSplits& splits);
 
 }  // namespace incise

@@ -16,7 +16,7 @@
 namespace incise {
 namespace {
 
-/// Bits of the axes of a diagonal block that hold_constrained turned into identity rows.
+/// Returns the axes of a diagonal block that hold_constrained turned into identity rows, bit i for axis i.
 std::uint8_t identity_axes(const double* block) {
   std::uint8_t axes = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -37,9 +37,9 @@ struct TwoLevelPcg::Data {
   std::vector<Mat3> inverse_diagonal;
   std::vector<std::uint8_t> held;
 
-  std::unique_ptr<SinglePcg> single;  // does the iterations in single precision
+  std::unique_ptr<SinglePcg> single;  // iterates in single precision; null with Precision::Double
 
-  // Vectors of one solve, and one partial sum per chunk; empty in single precision until a system has to be solved again.
+  // Vectors of one solve (in single precision empty until a system must be solved again), and a partial sum per chunk.
   Points r, z, p, q;
   std::vector<double> restricted, corrected;
   std::vector<double> partial_rr, partial_rz, partial_pq;
@@ -66,8 +66,8 @@ struct TwoLevelPcg::Data {
     workers.for_chunks(coarse.aggregates().count(), kAggregatesPerChunk, body);
   }
 
-  /// x += alpha p, r -= alpha q, z = D⁻¹ r and the restriction of r, in one sweep; fills partial_rr and partial_rz
-  /// (without coarse part).
+  /// x += alpha p, r -= alpha q, z = D⁻¹ r and the restriction Pᵀ r, in one sweep; fills partial_rr and partial_rz
+  /// (without the coarse part).
   void move_and_precondition(double alpha, std::span<Vec3> x, Workers& workers) {
     for_aggregates(workers, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
       double rr = 0.0;
@@ -114,7 +114,7 @@ struct TwoLevelPcg::Data {
     return sum_of(partial_pq);
   }
 
-  /// y = C Pᵀ r; returns r · M r, since r · P y = (Pᵀ r) · y.
+  /// y = C Pᵀ r; returns r · M⁻¹ r, since r · P y = (Pᵀ r) · y.
   double finish_preconditioning(Workers& workers) {
     coarse.apply(restricted, corrected, workers);
     return sum_of(partial_rz) + std::inner_product(restricted.begin(), restricted.end(), corrected.begin(), 0.0);
@@ -140,7 +140,7 @@ void TwoLevelPcg::update(const BlockMatrix& matrix, bool refresh_coarse, Workers
                          std::span<const std::uint8_t> changed_rows) {
   Data& d = *data_;
   INCISE_REQUIRE(matrix.pattern == d.pattern, "expected a matrix of the pattern that the solver was made for");
-  if (!d.has_coarse) changed_rows = {};  // nothing was taken yet
+  if (!d.has_coarse) changed_rows = {};  // first update
   INCISE_REQUIRE(changed_rows.empty() || changed_rows.size() == d.pattern->rows(),
                  fmt::format("expected one flag per row, found {}", changed_rows.size()));
   workers.for_each(d.pattern->rows(), kRowsPerChunk, [&](std::size_t v) {

@@ -17,13 +17,13 @@ constexpr std::size_t kTetsPerChunk = 256;
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-/// Deviator of Green and Lagrange's strain (Fᵀ F − I)/2.
+/// Returns the deviator of the Green-Lagrange strain (Fᵀ F − I)/2.
 Mat3 strain_deviator(const Mat3& f) {
   const Mat3 c = f.transpose() * f;
   return 0.5 * (c - c.trace() / 3.0 * Mat3::Identity());
 }
 
-/// What one step does to a Maxwell branch: q ← decay q + uptake (D − D_old).
+/// One step of a Maxwell branch: q ← decay q + uptake (D − D_old).
 struct BranchStep {
   double share, decay, uptake;
 };
@@ -31,7 +31,7 @@ struct BranchStep {
 struct ViscousStep {
   std::vector<BranchStep> branches;
   double damper = 0.0;   ///< η / (μ dt)
-  double stiffness = 0;  ///< tangent of the stress to D, over 2 μ
+  double stiffness = 0;  ///< derivative of the stress with respect to D, divided by 2 μ
 
   ViscousStep(const Material& material, double step_s) {
     for (const PronyTerm& term : material.prony) {
@@ -44,7 +44,7 @@ struct ViscousStep {
   }
 };
 
-/// The viscous law of one model, one step and the memory of the step's start.
+/// The viscous law of one model for one step, with the memory at its start.
 class ViscousTets {
  public:
   ViscousTets(const TissueModel& model, const TissueState& state, double step_s)
@@ -52,7 +52,7 @@ class ViscousTets {
 
   [[nodiscard]] Mat3 deformation(std::size_t tet) const { return deformation_gradient(model_, state_.positions, tet); }
 
-  /// q of branch i at the end of the step.
+  /// Returns q of branch i at the end of the step.
   [[nodiscard]] Mat3 branch(std::size_t tet, std::size_t i, const Mat3& change) const {
     const BranchStep& b = step_.branches[i];
     return b.decay * state_.memory.branches[tet * step_.branches.size() + i] + b.uptake * change;
@@ -62,7 +62,7 @@ class ViscousTets {
     return strain_deviator(f) - state_.memory.strains[tet];
   }
 
-  /// Second Piola stress; traceless.
+  /// Returns the second Piola stress, kPa; its trace is 0.
   [[nodiscard]] Mat3 stress(std::size_t tet, const Mat3& f) const {
     const Mat3 d = change(tet, f);
     Mat3 sum = step_.damper * d;
@@ -70,12 +70,12 @@ class ViscousTets {
     return 2.0 * model_.lame[tet].mu_kpa * sum;
   }
 
-  /// Energy density whose derivative by the end's strain is the stress.
+  /// Returns the energy density, kPa, whose derivative with respect to the final strain is the stress.
   [[nodiscard]] double potential(std::size_t tet) const {
     const Mat3 d = change(tet, deformation(tet));
     double sum = step_.damper * d.squaredNorm();
     for (std::size_t i = 0; i < step_.branches.size(); ++i) {
-      // |decay q + uptake d|² / uptake without what is constant over the step: safe where uptake underflows to 0.
+      // |decay q + uptake d|² / uptake without its constant term: safe if uptake underflows to 0.
       const BranchStep& b = step_.branches[i];
       const Mat3& q = state_.memory.branches[tet * step_.branches.size() + i];
       sum += b.share * (b.uptake * d.squaredNorm() + 2.0 * b.decay * q.cwiseProduct(d).sum());
@@ -83,7 +83,7 @@ class ViscousTets {
     return model_.lame[tet].mu_kpa * sum;
   }
 
-  /// Tangent of the stress to the strain's deviator: dS = 2 m dev dE.
+  /// Returns m of the tangent dS = 2 m dev dE, kPa.
   [[nodiscard]] double modulus(std::size_t tet) const { return model_.lame[tet].mu_kpa * step_.stiffness; }
   [[nodiscard]] std::size_t branch_count() const { return step_.branches.size(); }
 
@@ -93,14 +93,14 @@ class ViscousTets {
   ViscousStep step_;
 };
 
-/// Without its negative eigenvalues: stress that shortens would otherwise make the tangent indefinite.
+/// Returns the stress with its negative eigenvalues set to zero: compression could make the tangent indefinite.
 Mat3 without_compression(const Mat3& stress) {
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(stress);
   const Vec3 values = solver.eigenvalues().cwiseMax(0.0);
   return solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
 }
 
-/// Block (a, b) of the tangent per volume: with Fa = F g_a,
+/// Returns block (a, b) of the tangent per volume: with Fa = F g_a,
 /// (g_a · S g_b) I + m (g_a · g_b) F Fᵀ + m Fb Faᵀ − 2m/3 Fa Fbᵀ.
 Mat3 viscous_block(const Mat3& f, const Mat3& geometric_stress, double m, const Vec3& a, const Vec3& b) {
   const Vec3 fa = f * a;

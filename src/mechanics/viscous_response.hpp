@@ -4,7 +4,7 @@
 
 namespace incise {
 
-/// The memory of a body at rest; empty without viscosity.
+/// Returns the viscous memory of a body at rest; empty without viscosity.
 [[nodiscard]] ViscousMemory rest_memory(const Material& material, std::size_t tets);
 
 }  // namespace incise

@@ -7,7 +7,7 @@
 namespace incise {
 namespace {
 
-/// g_n at every vertex of the star of n, in the order of the star's columns.
+/// Computes g_n at every vertex of the star of n, in the order of the star's columns.
 void gather_gradient(const TissueModel& model, const TissueState& state, std::span<const Mat3> gradients, std::size_t n,
                      std::span<const std::int32_t> star, std::span<Vec3> result) {
   std::fill(result.begin(), result.end(), Vec3::Zero());
@@ -33,7 +33,7 @@ VolumeAverages::VolumeAverages(const TissueModel& model, const TissueState& stat
   workers.for_each(volume_.size(), kVerticesPerChunk, [&](std::size_t n) {
     double volume = 0.0;
     double change = 0.0;
-    double compliance = 0.0;  // infinite where a tet has λ = 0: it takes no pressure, so the vertex bears none
+    double compliance = 0.0;  // infinite if a tet has λ = 0: it resists no pressure, so neither does the vertex
     for (auto i = model.vertex_tet_start[n]; i < model.vertex_tet_start[n + 1]; ++i) {
       const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
       if (state.is_live[tet] == 0) continue;
@@ -76,7 +76,7 @@ void VolumeAverages::add_stiffness(const TissueState& state, std::span<const Mat
     const auto row = std::span(gradient).subspan(static_cast<std::size_t>(stars.row_start[n]), star.size());
     gather_gradient(model_, state, gradients, n, star, row);
   });
-  // Row v: every vertex n of its star couples v to the whole star of n. Ascending n: K_wv is the exact transpose of
+  // Row v: every vertex n of its star couples v to the whole star of n. n ascends, so K_wv is the exact transpose of
   // K_vw.
   workers.for_each(volume_.size(), kVerticesPerChunk, [&](std::size_t v) {
     for (const std::int32_t neighbour : star_of(v)) {

@@ -14,11 +14,11 @@ namespace incise::meshing_detail {
 namespace {
 
 constexpr float kBodyThreshold = 0.5F;
-constexpr float kFaintest = 0.005F;  ///< fainter voxels are background: blurring leaves tails that never end
-constexpr float kRounding = 0.02F;   ///< recursive Gaussian filters leave [0, 1] by this much
+constexpr float kFaintest = 0.005F;  ///< fainter voxels are background: blurring leaves endless tails
+constexpr float kRounding = 0.02F;   ///< recursive Gaussian filters exceed [0, 1] by up to this much
 constexpr std::int32_t kNone = -1;
 
-/// Voxels joined by faces, as positions in the array.
+/// Visits the voxels that share a face with a voxel, as offsets in the array.
 class Neighbours {
  public:
   explicit Neighbours(const VolumeGrid& grid) : grid_(grid) {}
@@ -49,7 +49,7 @@ struct Components {
   std::vector<std::size_t> sizes;
 };
 
-/// Spreads components over voxels brighter than `threshold`, breadth first from the voxels already in `queue`.
+/// Spreads components over voxels of at least `threshold`, breadth first from the voxels already in `queue`.
 void spread(const GrayVolume& occupancy, float threshold, std::vector<std::size_t>& queue, Components& found) {
   const Neighbours neighbours(occupancy.grid);
   for (std::size_t next = 0; next < queue.size(); ++next) {
@@ -92,7 +92,7 @@ struct IndexRange {
   std::array<int, 3> size{};
 };
 
-/// The box of one component in voxels, with one voxel of margin (which may leave the volume).
+/// Returns the box of one component in voxels, with a margin of one voxel, which may lie outside the volume.
 IndexRange range_of(const VolumeGrid& grid, const Components& components, std::int32_t wanted) {
   std::array<int, 3> low = grid.size;
   std::array<int, 3> high{-1, -1, -1};

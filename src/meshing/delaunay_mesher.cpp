@@ -31,8 +31,8 @@ using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 constexpr std::size_t kCallsBetweenCancelChecks = 8192;
 
-/// CGAL prints ten lines of a check that failed, and then throws what the caller turns into one sentence. Its handlers
-/// are the process's, so they are set once, whoever meshes first.
+/// Silences CGAL, which prints ten lines for a failed check before it throws; the caller turns the exception into one
+/// sentence. The handlers belong to the process, so they are set only once.
 void quiet_checks() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -46,7 +46,7 @@ Vec3 to_vec3(const Kernel::Point_3& p) {
   return {p.x(), p.y(), p.z()};
 }
 
-/// Criterion field: a multiple of the wanted edge length. Also where a request to stop is noticed.
+/// Criterion field: a multiple of the requested edge length. Also checks for a request to stop.
 struct ScaledSize {
   using FT = Kernel::FT;
   using Point_3 = Kernel::Point_3;
@@ -98,7 +98,7 @@ DelaunayMesher& DelaunayMesher::operator=(DelaunayMesher&&) noexcept = default;
 RefineEnd DelaunayMesher::refine() {
   using namespace CGAL::parameters;
   quiet_checks();
-  CGAL::get_default_random() = CGAL::Random(0);  // a second run in one process starts like the first
+  CGAL::get_default_random() = CGAL::Random(0);  // a second run in the same process starts like the first
   State& s = *state_;
   std::atomic<bool> stop = false;
   std::size_t calls = 0;
@@ -123,7 +123,7 @@ RefineEnd DelaunayMesher::refine() {
 
 bool DelaunayMesher::perturb(double sliver_bound_deg) {
   quiet_checks();
-  // No time limit: the answer must not depend on how fast the machine is. The search ends by itself.
+  // No time limit: the result must not depend on the machine's speed. The search ends by itself.
   return CGAL::perturb_mesh_3(state_->complex, state_->domain, CGAL::parameters::time_limit = 0,
                               CGAL::parameters::sliver_bound = sliver_bound_deg) == CGAL::BOUND_REACHED;
 }
@@ -142,7 +142,7 @@ TetMesh DelaunayMesher::extract() const {
   const Complex& complex = state_->complex;
   TetMesh mesh;
   mesh.tets.reserve(tet_count());
-  std::unordered_map<const void*, VertexId> ids;  // looked up only, never walked: its order does not matter
+  std::unordered_map<const void*, VertexId> ids;  // never iterated, so its order does not matter
   for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end(); ++cell) {
     Tet tet;
     for (int corner = 0; corner < 4; ++corner) {

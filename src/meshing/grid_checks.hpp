@@ -6,8 +6,8 @@
 
 namespace incise::meshing_detail {
 
-/// Refuses a grid that cannot be meshed: sizes, spacing, origin, direction, or a voxel count that does not match.
-/// @throws InvalidArgument saying what was found and expected.
+/// Checks sizes, spacing, origin and direction of a grid, and the count of its voxels.
+/// @throws InvalidArgument, with the value found and expected, for a grid that cannot be meshed.
 void require_sound(const VolumeGrid& grid, std::size_t voxels);
 
 }  // namespace incise::meshing_detail

@@ -50,7 +50,7 @@ std::uint64_t morton_code(const Vec3& p, const Box3& box) {
          spread_bits(static_cast<std::uint64_t>(scaled.z())) << 2;
 }
 
-/// Used vertices of the mesh, in Morton order; ties (vertices nearer than the code resolves) in order of coordinates.
+/// Returns the used vertices in Morton order; ties (vertices closer than the code resolves) in order of coordinates.
 std::vector<std::size_t> ordered_vertices(const TetMesh& mesh) {
   std::vector<std::uint8_t> is_used(mesh.vertices.size(), 0);
   Box3 box;

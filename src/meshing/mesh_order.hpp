@@ -6,13 +6,14 @@
 
 namespace incise::meshing_detail {
 
-/// Keeps the largest set of tets joined by faces (the one with the lowest tet, of equally large ones); `dropped` counts
-/// the others. Vertices stay, used or not.
+/// Returns the mesh with only its largest face-connected set of tets (of equally large ones, that with the lowest tet).
+/// Vertices stay, used or not.
+/// @param dropped  set to the number of tets removed.
 [[nodiscard]] TetMesh largest_component(TetMesh mesh, std::size_t& dropped);
 
-/// The same mesh without unused vertices, its vertices along a Morton curve (neighbours in space are neighbours in
-/// memory), each tet with ascending corners but for the last two, which make it positive, and tets sorted by corners.
-/// Depends on the geometry only.
+/// Returns the mesh in an order that depends only on its geometry: without unused vertices, vertices along a Morton
+/// curve (neighbours in space are near in memory), tets sorted by corners. The corners of a tet ascend, except that the
+/// last two are swapped if necessary for a positive volume.
 [[nodiscard]] TetMesh in_canonical_order(const TetMesh& mesh);
 
 }  // namespace incise::meshing_detail

@@ -28,12 +28,12 @@ using meshing_detail::RefineEnd;
 using meshing_detail::SampledSizing;
 using meshing_detail::VolumeByIso;
 
-// Measured on a ball and a tongue-like body, 4k to 200k tets, at the default factors; shifts with the cube of
-// cell_size_factor.
+// Measured on a ball and a tongue-like body, 4k to 200k tets, with the default factors; inversely proportional to the
+// cube of cell_size_factor.
 constexpr double kTetsPerCube = 10.3;
 constexpr double kCellSizeOfCalibration = 0.75;
 constexpr double kLeftAfterPerturbation = 0.99;  ///< perturbation and exudation lose about 1 % of the tets
-constexpr double kEnoughOfTolerance = 0.5;       ///< refinement stops correcting within half of what is tolerated
+constexpr double kEnoughOfTolerance = 0.5;       ///< refinement stops correcting within half of the tolerance
 
 using Clock = std::chrono::steady_clock;
 
@@ -41,20 +41,20 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Where refinement gives up: three times the vertices that max_tets usually has.
+/// Returns the number of vertices at which refinement gives up: three times as many as max_tets usually has.
 std::size_t most_vertices(const MeshingSettings& settings) {
   return settings.max_tets / 2 + 1000;
 }
 
-/// What the mesh's volume is held against.
+/// The volume with which the mesh's volume is compared.
 enum class TissueVolume {
-  InsideSkin,      ///< enclosed by the surface of occupancy 0.5: right for occupancy with a faint halo
-  SumOfOccupancy,  ///< what was there before a blur that keeps the sum
+  InsideSkin,      ///< enclosed by the surface of occupancy 0.5: correct for occupancy with a faint halo
+  SumOfOccupancy,  ///< sum of the occupancy: the volume before a blur that preserves the sum
 };
 
 constexpr double kSkin = 0.5;
 
-/// Everything that lives through one call.
+/// The state of one call.
 class Meshing {
  public:
   Meshing(const GrayVolume& occupancy, TissueVolume meant, const SizingField& sizing, const MeshingSettings& settings,
@@ -88,7 +88,7 @@ class Meshing {
   template <class Work>
   void in_phase(const std::string& name, double fraction, const Work& work) {
     throw_if_cancelled(monitor_, "meshing");
-    progress_ = std::max(progress_, fraction);  // phases may come again
+    progress_ = std::max(progress_, fraction);  // phases may repeat
     monitor_.progress("meshing", progress_);
     const auto start = Clock::now();
     work();
@@ -106,7 +106,7 @@ class Meshing {
     return tets_per_cube_ * sampled_->cubes(field);
   }
 
-  /// The scale of the sizing field for which the prediction is the target.
+  /// Returns the scale of the sizing field at which the predicted count is the target.
   [[nodiscard]] double scale_for_target() const {
     constexpr int kBisections = 60;
     double low = 1.0e-2;
@@ -123,7 +123,7 @@ class Meshing {
     if (settings_.target_tets) scale_ = scale_for_target();
     result_.predicted_tets = predicted_tets(field_.scaled(scale_));
     if (std::round(result_.predicted_tets) <= static_cast<double>(settings_.max_tets))
-      return;  // a target lies a rounding off
+      return;  // a target is reproduced up to rounding
     throw InvalidArgument(
         fmt::format("mesh sizing: fine_mm = {:.3g} and coarse_mm = {:.3g} predict {:.0f} tetrahedra, "
                     "expected at most {}. Use longer edges or a smaller target count.",
@@ -174,7 +174,7 @@ class Meshing {
     return std::move(*mesher);
   }
 
-  /// Refines until count and volume fit, correcting the prediction and the iso value by what came out.
+  /// Refines until count and volume fit; after each attempt, corrects the prediction and the iso value by its result.
   void refine_to_fit() {
     double aimed_mm3 = label_mm3_;
     for (;;) {
@@ -192,13 +192,13 @@ class Meshing {
       }
       if (!volume_fits) {
         aimed_mm3 += missing_mm3;
-        // A very coarse mesh of a round body cannot reach its volume: `meets_volume` tells.
+        // A very coarse mesh of a round body cannot reach its volume: `meets_volume` is then false.
         result_.iso = enclosed_->iso_for(aimed_mm3).value_or(result_.iso);
       }
     }
   }
 
-  /// Removes slivers; where some resist, starts again with slightly shorter edges, another mesh by chance, and keeps
+  /// Removes slivers. If some remain, starts again with slightly shorter edges, which gives a different mesh, and keeps
   /// the best.
   void improve() {
     constexpr double kShorter = 0.985;

@@ -25,13 +25,13 @@ Corners corners_of(const TetMesh& mesh, const Tet& tet) {
           vertex(mesh.vertices, tet[3])};
 }
 
-/// Outward normals of the faces opposite to each corner, as long as twice the face's area, for a positive tet.
+/// Returns the normals of the faces opposite each corner, of length twice the face's area; outward for a positive tet.
 std::array<Vec3, 4> area_normals(const Corners& c) {
   return {(c[3] - c[1]).cross(c[2] - c[1]), (c[2] - c[0]).cross(c[3] - c[0]), (c[3] - c[0]).cross(c[1] - c[0]),
           (c[1] - c[0]).cross(c[2] - c[0])};
 }
 
-/// 3 r / R from the volume, the faces' areas and the products of opposite edges (Crelle's formula for R).
+/// Returns 3 r / R from the volume, the areas of the faces and the products of opposite edges (Crelle's formula for R).
 double radius_ratio(const Corners& c, const std::array<Vec3, 4>& normals, double volume) {
   double twice_area = 0.0;
   for (const Vec3& n : normals) twice_area += n.norm();

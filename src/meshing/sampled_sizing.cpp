@@ -25,7 +25,7 @@ SampledSizing::SampledSizing(const SizingField& field, const BodyField& body, do
         for (std::size_t i = 0; i < size_[0]; ++i) {
           const Vec3 index(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
           const double exact_mm = field.distance_to_band_mm(body.world_from_local(step_mm_ * index));
-          distance_mm_.push_back(static_cast<float>(exact_mm));  // rounding hides the last bits of a moved frame
+          distance_mm_.push_back(static_cast<float>(exact_mm));  // rounding drops bits that depend on the frame
         }
       }
     }
@@ -39,7 +39,7 @@ double SampledSizing::distance_mm(const Vec3& local) const {
   Vec3 f;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    // Circumcentres may lie outside the box: they take the value of the border.
+    // Circumcentres may lie outside the box: they get the value at its border.
     const double index = std::clamp(local[axis] / step_mm_, 0.0, static_cast<double>(size_[a] - 1));
     cell[a] = std::min(static_cast<std::size_t>(index), size_[a] - 2);
     f[axis] = index - static_cast<double>(cell[a]);
@@ -69,7 +69,7 @@ void SampledSizing::measure_body(const BodyField& body, double iso) {
 double SampledSizing::cubes(const SizingField& scaled) const {
   double sum = 0.0;
   for (std::size_t bin = 0; bin < volume_mm3_.size(); ++bin) {
-    // Points of the band itself have distance 0 exactly: the first bin stands for them.
+    // The first bin holds the points in the band, whose distance is exactly 0.
     const double d = bin == 0 ? 0.0 : (static_cast<double>(bin) + 0.5) * kBinMm;
     const double h = scaled.edge_length_at_mm(d);
     sum += volume_mm3_[bin] / (h * h * h);

@@ -8,17 +8,17 @@
 
 namespace incise::meshing_detail {
 
-/// The distance to the band, sampled once on a lattice of about 1 mm over a body's box and interpolated trilinearly:
-/// what refinement asks for millions of times. Serves every scaling of the same field. Coordinates are the body's local
-/// ones.
+/// The distance to the band, which refinement needs millions of times: sampled once on a lattice of 1 mm (coarser for a
+/// large body) over the body's box, and interpolated trilinearly. Valid for every scaling of the same field.
+/// Coordinates are the body's local ones.
 class SampledSizing {
  public:
   SampledSizing(const SizingField& field, const BodyField& body, double iso);
 
   [[nodiscard]] double distance_mm(const Vec3& local) const;
 
-  /// Σ over the body of volume / h³ for edge lengths h of a scaled version of the field: about the number of cubes of
-  /// edge h.
+  /// Returns Σ volume / h³ over the body, for edge lengths h of a scaled version of the field: about the number of
+  /// cubes of edge h.
   [[nodiscard]] double cubes(const SizingField& scaled) const;
 
  private:

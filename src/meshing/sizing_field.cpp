@@ -35,12 +35,12 @@ void append_violations(std::vector<Problem>& violations, const PlannedCut& cut) 
   expect(cut.depth_mm > 0.0, "depth_mm", cut.depth_mm, "a finite number > 0");
 }
 
-/// How far value lies outside [low, high].
+/// Returns how far `value` lies outside [low, high].
 double excess(double value, double low, double high) {
   return std::max({low - value, value - high, 0.0});
 }
 
-/// Nearest point of the path in the picture plane, and on which side of a closed path q lies.
+/// The nearest point of the path in the picture plane, and the side of a closed path on which q lies.
 struct PlaneDistance {
   double squared = std::numeric_limits<double>::infinity();
   double height = 0.0;  ///< of the path at its nearest point
@@ -74,7 +74,7 @@ PlaneDistance plane_distance(const Points& path, bool is_closed, const Vec3& q) 
 }  // namespace
 
 SizingSettings default_lengths(double longest_side_mm) {
-  constexpr double kMadeForMm = 40.0;  // as the default constraints are
+  constexpr double kMadeForMm = 40.0;  // as for the default constraints
   const double share = longest_side_mm > 0.0 ? std::min(1.0, longest_side_mm / kMadeForMm) : 1.0;
   SizingSettings settings;
   settings.fine_mm *= share;
@@ -108,7 +108,7 @@ SizingField SizingField::around_cut(const PlannedCut& cut, const SizingSettings&
             .is_closed = cut.path.is_closed,
             .inside_mm = settings.band_inside_mm,
             .outside_mm = cut.path.is_closed ? settings.band_outside_mm : widest_mm,
-            // Above the path there is no tissue but where the surface bulges next to it.
+            // There is tissue above the path only where the surface bulges next to it.
             .above_mm = widest_mm,
             .below_mm = cut.depth_mm + settings.band_below_mm};
   const bool is_long = cut.path.points.size() > kMaxPathPoints;

@@ -49,7 +49,7 @@ std::vector<DirectedEdge> sorted_edges(const TriMesh& surface) {
   return edges;
 }
 
-/// Refuses a surface unless each edge joins exactly two triangles that run through it in opposite directions.
+/// Refuses a surface unless each edge joins exactly two triangles that traverse it in opposite directions.
 void require_closed(const TriMesh& surface) {
   if (surface.triangles.empty()) throw InvalidArgument("surface: found no triangles, expected a closed surface");
   const std::vector<DirectedEdge> edges = sorted_edges(surface);
@@ -81,8 +81,8 @@ Box3 box_around(const Points& points, const std::vector<Triangle>& triangles) {
   return box;
 }
 
-/// Twice the area of (a, b, q) in the y-z plane, computed the same way for both triangles that share the edge, so that
-/// rays do not slip between them.
+/// Returns twice the signed area of the triangle of a, b and (y, z) in the y-z plane. The computation is the same for
+/// both triangles that share the edge, so no ray slips between them.
 double side_of(const TriMesh& surface, VertexId a, VertexId b, double y, double z) {
   const bool swap = b < a;
   const Vec3& p = surface.vertices[(swap ? b : a).index()];
@@ -97,14 +97,14 @@ struct Crossing {
   int turn = 0;  ///< +1 where the ray along +x enters the body, -1 where it leaves
 };
 
-/// A number in [0, 1) for each n; consecutive ones fill the interval evenly (golden ratio).
+/// Returns a number in [0, 1) for each n; consecutive ones fill the interval evenly (golden ratio).
 double even_fraction(int n) {
   constexpr double kGolden = 0.6180339887498949;
   return n * kGolden - std::floor(n * kGolden);
 }
 
-/// Rays along +x, one through each square of a lattice in the y-z plane, and where they cross the surface. The place
-/// within the square changes from row to row, so that faces along the axes do not gain or lose a whole row of rays.
+/// Rays along +x, one through each square of a lattice in the y-z plane, with their crossings of the surface. The place
+/// within the square varies, so a face parallel to an axis does not gain or lose a whole row of rays.
 class RayLattice {
  public:
   RayLattice(const TriMesh& surface, double y0, double z0, double step, int ny, int nz)
@@ -116,7 +116,7 @@ class RayLattice {
   }
 
   /// Calls visit(j, k, from_mm, to_mm) for every stretch of a ray inside the body, in order of rays, then x.
-  /// @returns false, having stopped, when a ray does not leave the body as often as it enters: it met an edge exactly.
+  /// @returns false, and stops, if a ray does not leave the body as often as it enters, because it met an edge exactly.
   template <class Visit>
   [[nodiscard]] bool for_each_inside(const Visit& visit) const {
     const auto rays_along_y = static_cast<std::size_t>(ny_);
@@ -166,7 +166,7 @@ class RayLattice {
   std::vector<Crossing> crossings_;
 };
 
-/// Adds `weight` x the covered fraction of each voxel of one row to the row.
+/// Adds `weight` times the fraction of each voxel that [from, to], in voxels, covers to a row.
 void add_interval(float* row, int count, double from, double to, double weight) {
   const int first = std::max(static_cast<int>(std::floor(from)), 0);
   const int last = std::min(static_cast<int>(std::floor(to)), count - 1);
@@ -175,7 +175,7 @@ void add_interval(float* row, int count, double from, double to, double weight) 
   }
 }
 
-/// Rays through a voxel along y and along z: many, unless that makes too many in all.
+/// Returns the number of rays per voxel along y, and along z: 3 to 8, fewer for a large grid.
 int rays_per_voxel(const VolumeGrid& grid) {
   constexpr double kMostRays = 4.0e6;
   const double rows = static_cast<double>(grid.size[1]) * static_cast<double>(grid.size[2]);
@@ -217,7 +217,7 @@ GrayVolume occupancy_of(const TriMesh& closed_surface, double voxel_mm, double s
   const double weight = 1.0 / (rays * rays);
   const Vec3 low = result.grid.origin_mm - Vec3::Constant(0.5 * voxel_mm);
   for (int attempt = 0; attempt < kShiftsTried; ++attempt) {
-    // A slightly different place each time: a ray that met an edge exactly will miss it.
+    // Each attempt shifts the rays slightly: a ray that met an edge exactly now misses it.
     const double shift = 1.0e-4 * (attempt + 0.37) * step;
     const RayLattice lattice(closed_surface, low.y() + shift, low.z() + shift * (1.0 + 1.0e-5), step,
                              rays * result.grid.size[1], rays * result.grid.size[2]);
@@ -227,7 +227,7 @@ GrayVolume occupancy_of(const TriMesh& closed_surface, double voxel_mm, double s
                    (to_mm - low.x()) / voxel_mm, weight);
     });
     if (!is_consistent) continue;
-    for (float& value : result.voxels) value = std::clamp(value, 0.0F, 1.0F);  // sums end a rounding error off 0 and 1
+    for (float& value : result.voxels) value = std::clamp(value, 0.0F, 1.0F);  // removes rounding errors of the sums
     blur(result, sigma_voxels);
     return result;
   }

@@ -10,7 +10,8 @@ namespace {
 constexpr std::size_t kIsoBins = 2048;
 constexpr int kSamplesPerAxis = 2;
 
-/// Numbers in [0, 1)³ that fill the cube evenly (additive recurrence with the powers of the root of g⁴ = g + 1).
+/// Returns point n of a sequence that fills [0, 1)³ evenly (additive recurrence with the powers of the root of
+/// g⁴ = g + 1).
 Vec3 even_point(std::size_t n) {
   constexpr double kG = 1.2207440846057596;
   const double t = static_cast<double>(n) + 0.5;

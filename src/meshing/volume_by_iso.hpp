@@ -7,12 +7,12 @@
 
 namespace incise::meshing_detail {
 
-/// The volume enclosed by each iso surface of a body, from samples spread evenly through its voxels.
+/// The volume enclosed by each iso surface of a body, from samples spread evenly over its voxels.
 class VolumeByIso {
  public:
   explicit VolumeByIso(const BodyField& body);
   [[nodiscard]] double volume_mm3(double iso) const;
-  /// The iso value that encloses the volume; nullopt when none in [0.1, 0.9] does.
+  /// Returns the iso value whose surface encloses the volume; nullopt if none in [0.1, 0.9] does.
   [[nodiscard]] std::optional<double> iso_for(double volume_mm3) const;
 
  private:

@@ -17,7 +17,7 @@ namespace incise {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kShortMoveMm = 1e-6;  // a move that falls short by less was not cut short
+constexpr double kShortMoveMm = 1e-6;  // a move that falls short by less counts as complete
 
 double positive_angle(double angle) {
   const double turned = std::fmod(angle, kTurn);
@@ -47,7 +47,7 @@ std::vector<double> sector_angles(const ToolPath& path, const SurfaceView& view,
   return angles;
 }
 
-/// Position in `angles` of the one nearest to `angle`, round the circle.
+/// Index in `angles` of the one nearest to `angle`, round the circle.
 std::size_t nearest_sector(const std::vector<double>& angles, double angle) {
   const auto above = std::upper_bound(angles.begin(), angles.end(), angle);
   const auto next = static_cast<std::size_t>(above - angles.begin());
@@ -57,8 +57,7 @@ std::size_t nearest_sector(const std::vector<double>& angles, double angle) {
   return gap_before <= gap_after ? before : next % angles.size();
 }
 
-/// Fills sectors without a measured point by linear interpolation over the angle between the nearest ones that have
-/// some.
+/// Fills sectors without a measured point by linear interpolation over the angle between the nearest sectors with one.
 void bridge_gaps(const std::vector<double>& angles, Compensation& result) {
   const std::size_t n = angles.size();
   const std::vector<double> known = result.error_mm;
@@ -159,7 +158,7 @@ Compensation compensate_paper(const ToolPath& current, const Contour& measured, 
   Compensation result;
   result.path = current;
   result.path.tumor_edge = tumor_edge;
-  result.path.source_sha256.clear();  // it is not what the file held any more
+  result.path.source_sha256.clear();  // it no longer matches the file
   measure_sectors(errors, angles, first_angle, view, center, result);
   smooth(result.error_mm, settings.smoothing_passes);
   move_waypoints(view, center, settings, result);

@@ -17,10 +17,10 @@ namespace incise {
 namespace {
 
 constexpr int kMostHalvings = 6;
-/// Share of the floor that is left of the mesh's grain once errors are averaged along the path.
+/// Share of the mesh-resolution limit that remains of the mesh's grain once errors are averaged along the path.
 constexpr double kSmoothedGrain = 0.25;
 
-/// The iteration: passes that were made, and where the next one goes.
+/// The iteration: passes made so far, and where the next one goes.
 class ConvergingIteration {
  public:
   ConvergingIteration(const ToolPath& intended, const SurfaceQuery& surface, const MeasureCut& measure,
@@ -56,9 +56,9 @@ class ConvergingIteration {
     return greatest;
   }
 
-  /// A ring can stay open by a bridge of a fraction of a millimetre where its end meets its start: tissue that hangs
-  /// there is pushed aside. A tenth of a millimetre farther out or in, it is cut through. So it is with a place that is
-  /// a hair too shallow.
+  /// A bridge of a fraction of a millimetre can hold a ring open where its end meets its start, because tissue that
+  /// hangs there is pushed aside. A tenth of a millimetre farther out or in, the tool cuts through it. The same holds
+  /// for a place that is slightly too shallow.
   void mend_by_moving() {
     for (int k = 0; k < settings_.more_simulations && is_to_be_mended(); ++k) {
       const double move_mm =
@@ -90,8 +90,8 @@ class ConvergingIteration {
     }
   }
 
-  /// What a real cut errs beyond the simulated one and its bias: the residual, and what the share leaves of the first
-  /// cut's error or adds to it.
+  /// Sets the errors of a real cut beyond the simulated one and its bias: the residual, and (share − 1) times the first
+  /// cut's errors.
   void expect_beyond(const CompensationPass& first) {
     beyond_mm_ = settings_.residual_mm;
     if (settings_.simulated_share == 1.0) return;
@@ -144,16 +144,16 @@ class ConvergingIteration {
     return a.cost_mm() < b.cost_mm();
   }
 
-  /// Whether the next pass is better made from a: a ring that stayed open in a layer a tenth of a millimetre off its course leads
-  /// to a closed one sooner than a closed ring that is a millimetre off.
+  /// Returns whether a is the better start of the next pass. A path a tenth of a millimetre off whose ring stays open
+  /// in one layer leads to a closed ring sooner than a closed ring that is a millimetre off.
   static bool is_nearer(const CompensationPass& a, const CompensationPass& b) { return a.mean_abs_error_mm && a.cost_mm() < b.cost_mm(); }
 
-  /// Nothing is held against its cut that another course may mend.
+  /// Returns whether no objection to the cut remains that another path may remove.
   static bool is_sound(const CompensationPass& pass) { return pass.is_success && pass.verdict == VerdictStatus::Ok; }
 
-  /// No sound pass is as near as the nearest one within the tolerance, and that one is near enough to be accepted.
-  /// Where nothing better than it is known, it has to lack little: what is open or shallow all round stays so a tenth
-  /// of a millimetre away.
+  /// Returns whether more simulations should mend the nearest pass: no sound pass is as near within the tolerance, and
+  /// the nearest errs little enough to be accepted. If the nearest pass is itself the best, it must lack little: a ring
+  /// that is open or shallow all round stays so a tenth of a millimetre away.
   [[nodiscard]] bool is_to_be_mended() const {
     const CompensationPass& best = passes_[best_];
     const CompensationPass& nearest = passes_[nearest_];
@@ -175,7 +175,8 @@ class ConvergingIteration {
     return point;
   }
 
-  /// From the nearest pass, inside the trust region, shortened until it can be cut; nothing: it would hardly move.
+  /// Returns the next path: from the nearest pass, inside the trust region, shortened until it can be cut; nullopt if
+  /// it would hardly move or cannot be cut.
   [[nodiscard]] std::optional<MovablePath::Moved> next_path() const {
     const IterationPoint base = as_point(passes_[nearest_]);
     std::vector<IterationPoint> earlier;
@@ -211,9 +212,9 @@ class ConvergingIteration {
   const MovablePath movable_;
   double trust_mm_;
   std::vector<CompensationPass> passes_;
-  std::vector<double> beyond_mm_;  ///< per waypoint; empty: nothing
-  std::size_t best_ = 0;     // of those that may be returned
-  std::size_t nearest_ = 0;  // to where the cut was intended: where the next pass starts
+  std::vector<double> beyond_mm_;  ///< errors expected beyond simulation and bias, per waypoint; empty: none
+  std::size_t best_ = 0;     // the pass to return
+  std::size_t nearest_ = 0;  // the pass nearest to the intended cut: the next pass starts from it
   ToolPath best_path_;
 };
 

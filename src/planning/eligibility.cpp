@@ -14,7 +14,7 @@
 namespace incise {
 namespace {
 
-/// Specimens, less one, that the usual spread counts as.
+/// The usual spread counts as this number of specimens, less one.
 constexpr double kUsualWeight = 4.0;
 
 /// Reasons not to trust the simulation of this specimen, apart from its distance to the calibrated ones.
@@ -36,7 +36,7 @@ std::vector<std::string> failings(const EligibilityEvidence& e, const Eligibilit
   return reasons;
 }
 
-/// Where it lies outside the calibrated range.
+/// Reasons by quantities that lie outside the calibrated range.
 std::vector<std::string> far_quantities(const EligibilityEvidence& e, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
   for (const SpecimenDistance& d : e.distances) {
@@ -48,14 +48,15 @@ std::vector<std::string> far_quantities(const EligibilityEvidence& e, const Elig
   return reasons;
 }
 
-/// Student's density at t over the same one drawn out to kUnlikeSpread times its width.
+/// Student's density at t over that of the same distribution widened by kUnlikeSpread.
 double likeness(double t, double degrees) {
   const double far = t / kUnlikeSpread;
   return kUnlikeSpread *
          std::exp(0.5 * (degrees + 1.0) * (std::log1p(far * far / degrees) - std::log1p(t * t / degrees)));
 }
 
-/// What p_worse leaves out of a corrected path; empty: nothing, its ring closed in all tissues.
+/// Part of a message: the share of tissues that p_worse leaves out because the corrected path's ring stays open; empty:
+/// none.
 std::string open_rings(const EligibilityEvidence& e) {
   if (!(e.corrected.unmeasured_weight > 0.0)) return {};
   return fmt::format("; also, its ring stays open in {:.0f} % of what the calibration expects",
@@ -147,7 +148,7 @@ Eligibility judge_eligibility(const EligibilityEvidence& evidence, const Eligibi
   }
   std::ranges::move(far_quantities(evidence, rules), std::back_inserter(judged.reasons));
   if (!judged.reasons.empty()) return judged;  // do not use
-  // A specimen that may be unlike is no better one to correct: its distance never lifts a doubt.
+  // A specimen that may be unlike is never a better candidate for correction: its distance must not lift a doubt.
   judged.reasons = doubts(evidence, std::max(*judged.p_worse, evidence.gain->p_worse), rules);
   if (!judged.reasons.empty()) {
     judged.advice = Advice::CutAsPlanned;

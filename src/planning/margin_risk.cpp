@@ -26,7 +26,7 @@ double mean_of(const std::vector<WeightedValue>& values) {
   return sum / weights;
 }
 
-/// Ends between which a share of the weight lies, as much of the rest on either side. @pre ascending, not empty.
+/// Interval that contains a share of the weight, with equal weight on either side of it. @pre ascending, not empty.
 Interval middle_of(const std::vector<WeightedValue>& values, double share) {
   double weights = 0.0;
   for (const WeightedValue& one : values) weights += one.weight;
@@ -60,7 +60,7 @@ MarginRisk::MarginRisk(const CutResidual& residual, const RobustSettings& settin
   const auto degrees = static_cast<double>(residual.degrees);
   const double widening = residual.degrees > 0 ? degrees / (degrees - 2.0) : 1.0;
   sd_ = (widening * residual.covariance_mm2.diagonal()).cwiseSqrt();
-  // A root that also a covariance of less than full rank has.
+  // A root that also exists for a covariance of less than full rank.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> axes(residual.covariance_mm2);
   const Eigen::MatrixXd root = axes.eigenvectors() * axes.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   Random random(settings.seed);

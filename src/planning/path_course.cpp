@@ -77,7 +77,7 @@ void PathCourse::bridge(Averages& averages) const {
     while (before < n && !is_known((i + n - before) % n)) ++before;
     std::size_t after = 1;
     while (after < n && !is_known((i + after) % n)) ++after;
-    if (before == n) continue;  // values lie between waypoints that are far apart: nothing is near any
+    if (before == n) continue;  // no waypoint has a value near it
     const std::size_t a = (i + n - before) % n;
     const std::size_t b = (i + after) % n;
     const auto round = [&](double way_mm) { return way_mm - length_ * std::floor(way_mm / length_); };

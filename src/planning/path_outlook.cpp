@@ -3,7 +3,7 @@
 namespace incise {
 namespace {
 
-/// Of the scenarios that were measured along both paths, the errors of one.
+/// Errors of one cut in the scenarios that were measured along both paths.
 std::vector<ScenarioErrors> errors_in_common(const ScenarioCuts::Cut& of, const ScenarioCuts::Cut& with) {
   std::vector<ScenarioErrors> errors;
   for (const LinearScenario& mine : of.scenarios) {

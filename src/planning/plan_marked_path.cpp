@@ -13,7 +13,7 @@
 namespace incise {
 namespace {
 
-constexpr double kStepMm = 0.5;        // of the triangles that stand for the cloud
+constexpr double kStepMm = 0.5;        // of the triangles that represent the cloud
 constexpr double kAroundMm = 4.0;      // of surface beyond the path
 constexpr double kMaxGapMm = 2.0;      // in the cloud, under the path
 constexpr double kFloorMm = 100.0;     // below the surface: deeper than any cut

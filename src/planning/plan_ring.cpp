@@ -53,7 +53,7 @@ class MarginField {
   double margin_;
 };
 
-/// Moves a place outwards or inwards until it has the margin; nullopt if that is not found within about a millimetre.
+/// Moves a place outwards or inwards until it has the margin; nullopt if there is none within about a millimetre.
 std::optional<Vec2> bring_to_margin(const Vec2& place, const MarginField& field) {
   const double start = field(place);
   if (start == 0.0) return place;
@@ -69,7 +69,7 @@ std::optional<Vec2> bring_to_margin(const Vec2& place, const MarginField& field)
   return place + 0.5 * (near + far) * direction;
 }
 
-/// The closed curve of equal margin, laid on the surface, dense.
+/// Traces the closed curve of equal margin densely on the surface.
 Contour margin_curve(const SurfaceView& view, const Contour& edge, const MarginField& field, double margin_mm) {
   const ViewFrame& frame = view.frame();
   const auto rightmost = std::max_element(edge.points.begin(), edge.points.end(), [&](const Vec3& a, const Vec3& b) {
@@ -77,7 +77,7 @@ Contour margin_curve(const SurfaceView& view, const Contour& edge, const MarginF
   });
   const Vec2 inside = view.place_of(*rightmost);
   if (!(field(inside) < 0.0)) throw_outside(margin_mm, *rightmost, "the tumour edge itself is not on the surface");
-  // A distance in space is never shorter than in the picture, so nothing lies beyond the margin's reach.
+  // A distance in space is never shorter than in the picture, so the search reaches every place at the margin.
   const LevelLoop loop = trace_level_loop(field, inside, margin_mm, std::min(kGridMm, 0.25 * margin_mm));
   const auto in_space = [&](const Vec2& place) {
     const std::optional<SurfacePoint> seen = view.at(place);
@@ -109,7 +109,7 @@ ToolPath plan_ring(const SurfaceQuery& surface, const Contour& tumor_edge, const
   const Contour even =
       resample(start_farthest_along(curve, settings.start_direction), static_cast<std::size_t>(settings.waypoints));
 
-  // Even spacing took the points off the curve by a chord's height: back onto it.
+  // Even spacing moved the points off the curve by the height of a chord. Move them back onto it.
   Contour entries{.points = {}, .is_closed = true};
   for (const Vec3& p : even.points) {
     const std::optional<Vec2> place = bring_to_margin(view.place_of(p), field);

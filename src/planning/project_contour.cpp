@@ -11,10 +11,10 @@ namespace incise {
 namespace {
 
 constexpr double kLongestSegmentMm = 1.0;
-/// A drawn contour longer than this is not in mm, or not a contour of anything that we cut.
+/// A longer contour is not in mm, or not a contour of anything that we cut.
 constexpr double kLongestContourMm = 1e4;
 
-/// What a message calls a drawn curve.
+/// Words of a message about a drawn curve.
 struct Words {
   const char* where;
   const char* field;
@@ -83,8 +83,8 @@ Contour project(const Contour& drawn, const SurfaceQuery& surface, const Vec3& a
     const auto pieces = static_cast<int>(std::ceil((end - start).norm() / kLongestSegmentMm));
     const std::string name = fmt::format("the segment from point {} to {}", i, (i + 1) % n);
     for (int piece = 1; piece < pieces; ++piece) {
-      // A chord under a bulging surface is drawn correctly although it lies deep: only the ends are held to the
-      // tolerance.
+      // A chord under a bulging surface is drawn correctly although it lies deep: the tolerance applies only to its
+      // ends.
       const Vec3 between = start + (end - start) * (static_cast<double>(piece) / pieces);
       result.points.push_back(lay_down(between, name, surface, approach, tolerance_mm + (end - start).norm(), words));
     }

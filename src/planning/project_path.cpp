@@ -40,7 +40,7 @@ struct Similarity {
   Vec3 t;
 };
 
-/// Lays points down one after the other and keeps the books.
+/// Projects points onto the surface one after the other and collects the measures.
 class LayDown {
  public:
   LayDown(const MeasuredSurface& surface, const ProjectSettings& settings, const std::filesystem::path& name)
@@ -75,7 +75,7 @@ class LayDown {
     names_.push_back(what);
     return *place;
   }
-  /// Where the k-th point goes with the average of the shifts around it.
+  /// Returns the k-th point, moved by the average of the shifts around it.
   Vec3 smoothed(std::size_t k) {
     if (settings_.smoothing_mm == 0.0 || !surface_.is_cloud()) return before_[k] - shifts_[k] * surface_.approach();
     const double average = average_shift(k);
@@ -89,8 +89,8 @@ class LayDown {
     result.shift_noise_mm += aside * aside;
     return before_[k] - average * surface_.approach();
   }
-  /// Averages the noise of neighbours out of the normals: a tool that nods from waypoint to waypoint asks too much of
-  /// the arm. Twice, because an average once over leaves its bends, and these are what the joints' accelerations feel.
+  /// Averages the noise of neighbours out of the normals: a tool that nods from waypoint to waypoint demands too much
+  /// of the arm. Two passes, because one leaves bends, and the joints' accelerations follow these.
   void smooth_normals() {
     constexpr int kPasses = 2;
     for (int pass = 0; pass < kPasses && settings_.smoothing_mm > 0.0; ++pass) {
@@ -115,7 +115,7 @@ class LayDown {
     return averaged(k, [this](std::size_t i) { return Vec3(shifts_[i], 0.0, 0.0); }).x();
   }
 
-  /// Of three numbers that each point has: their value at the k-th point on planes fitted to those around it.
+  /// Smooths three numbers per point: their value at the k-th point on planes fitted to the points around it.
   template <class ValueOf>
   [[nodiscard]] Vec3 averaged(std::size_t k, const ValueOf& value_of) const {
     Mat3 system = Mat3::Zero();
@@ -129,7 +129,7 @@ class LayDown {
       system += weight * basis * basis.transpose();
       right += weight * basis * value_of(i).transpose();
     }
-    system.diagonal().tail<2>().array() += 1e-9 * system(0, 0);  // points on a line leave the slope across it open
+    system.diagonal().tail<2>().array() += 1e-9 * system(0, 0);  // points on a line do not fix the slope across it
     return system.ldlt().solve(right).row(0).transpose();
   }
 
@@ -145,7 +145,7 @@ class LayDown {
   std::size_t count_ = 0;
 };
 
-/// What the tool is to follow before it is laid down, in the robot's frame.
+/// Returns the tool's course before projection, in the robot's frame.
 std::vector<Waypoint> course_of(const ToolPath& path, const Similarity& similarity, const Vec3& approach,
                                 const ProjectSettings& settings) {
   std::vector<Waypoint> course;

@@ -11,7 +11,7 @@ constexpr int kNewtonSteps = 60;
 constexpr double kStillMm = 1e-4;
 constexpr double kRoughnessWeight = 0.02;  // of squared second differences, mm, against mm of error
 constexpr int kPriceBisections = 24;
-constexpr double kHighestLogPrice = 12.0;  // of a mm of expected shortfall, in mm of expected error, as e to this
+constexpr double kHighestLogPrice = 12.0;  // ln(price of a mm of expected shortfall, in mm of expected error)
 constexpr int kShortenings = 6;
 constexpr double kSameWeight = 1e-9;
 
@@ -29,9 +29,9 @@ Eigen::MatrixXd roughness(Eigen::Index n) {
   return second.transpose() * second;
 }
 
-/// The move that minimises expected |error| + price · expected shortfall, per waypoint, + roughness: a convex function,
-/// by Newton's method with steps that are halved until it falls. It takes residuals for normal with their variances;
-/// the probability that a path is chosen by is counted.
+/// Finds the move that minimises expected |error| + price · expected shortfall, per waypoint, + roughness. This
+/// function is convex; Newton's method halves its steps until the function falls. Residuals are taken as normal with
+/// their variances here; the probability by which a path is chosen is counted over samples.
 class PricedMove {
  public:
   PricedMove(const std::vector<LinearScenario>& scenarios, const MarginRisk& risk)
@@ -113,7 +113,7 @@ class RobustChoice {
       if (chosen.scenarios.empty()) break;
       if (is_better(chosen.risk, result_.robust)) keep(chosen);
       if (chosen.risk.p_close_margin <= settings_.max_probability) break;
-      // The cuts themselves give more than was predicted: aim lower by as much, from here.
+      // The cuts themselves give a higher probability than predicted: aim lower by as much, from here.
       aim *= 0.5 * settings_.max_probability / chosen.risk.p_close_margin;
       base = std::move(chosen);
     }
@@ -121,7 +121,8 @@ class RobustChoice {
     result_.outcome = is_met ? RobustOutcome::Met : RobustOutcome::NotMet;
   }
 
-  /// The cheapest path that is predicted to keep the probability; the dearest where none is.
+  /// Returns the path of the lowest price that is predicted to keep the probability, or of the highest price if none
+  /// is.
   [[nodiscard]] std::optional<MovablePath::Moved> choose(const Cut& base, const Eigen::VectorXd& corrected,
                                                          double aim) const {
     const PricedMove priced(base.scenarios, cuts_.risk());
@@ -152,7 +153,8 @@ class RobustChoice {
     return best;
   }
 
-  /// The path after a move from `base`, inside the trust region about the corrected one, shortened until it can be cut.
+  /// Returns the path after a move from `base`, inside the trust region about the corrected path, shortened until it
+  /// can be cut.
   [[nodiscard]] std::optional<MovablePath::Moved> reachable(const Eigen::VectorXd& base, const Eigen::VectorXd& move,
                                                             const Eigen::VectorXd& corrected) const {
     double share = 1.0;
@@ -169,8 +171,8 @@ class RobustChoice {
     return std::nullopt;
   }
 
-  /// First what leaves fewest rings open (one that is left out is no way to a small probability), then what keeps the
-  /// probability, then what errs less; where neither keeps it, what comes nearer to it.
+  /// Prefers the path that leaves fewer rings open (leaving a scenario out must not lower the probability), then the
+  /// one that keeps the probability, then the smaller error; if neither keeps the probability, the lower probability.
   [[nodiscard]] bool is_better(const PathRisk& a, const PathRisk& b) const {
     if (std::abs(a.unmeasured_weight - b.unmeasured_weight) > kSameWeight)
       return a.unmeasured_weight < b.unmeasured_weight;

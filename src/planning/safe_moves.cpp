@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kShareBisections = 60;
 constexpr double kMoveToleranceMm = 1e-6;
-/// By how much a move stays inside a limit that the finished path is then held to: beyond rounding.
+/// Distance by which a move stays inside a limit to which the finished path is then held: more than rounding.
 constexpr double kLimitSlackMm = 1e-6;
 
 }  // namespace
@@ -31,7 +31,7 @@ Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is
       return std::nullopt;
     return Move{seen->position_mm, (seen->position_mm - origin).norm()};
   };
-  // Over a slope a step in the picture takes the waypoint farther in space, never less far.
+  // Over a slope, a step in the picture moves the waypoint farther in space, never less far.
   double near = 0.0;
   double far = length_mm;
   Move best{origin, 0.0};
@@ -65,7 +65,7 @@ MovablePath::MovablePath(const ToolPath& intended, const SurfaceQuery& surface, 
 
 MovablePath::Moved MovablePath::at(const std::vector<double>& offset_mm) const {
   Moved moved{intended_, {}, {}};
-  moved.path.source_sha256.clear();  // it is not what the file held any more
+  moved.path.source_sha256.clear();  // it no longer matches the file
   for (std::size_t i = 0; i < offset_mm.size(); ++i) {
     Waypoint& waypoint = moved.path.waypoints[i];
     const bool is_inward = offset_mm[i] < 0.0;

@@ -6,19 +6,20 @@
 
 namespace incise {
 
-/// One waypoint's way across the surface.
+/// A move of a waypoint over the surface.
 struct Move {
   Vec3 position_mm;
-  double length_mm = 0.0;  ///< straight, >= 0
+  double length_mm = 0.0;  ///< straight distance in space, mm, >= 0
 };
 
-/// From `start`, `length_mm` far over the surface in unit direction `heading` of the picture, or as far as is allowed:
-/// clear of the surface's rim and, inwards, with the region's margin from the edge.
+/// Moves from `start` over the surface in unit direction `heading` of the picture, by `length_mm` in space or as far as
+/// the region allows: clear of the surface's rim and, inwards, with its margin from the edge.
 /// @pre `start` shows the surface.
 [[nodiscard]] Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is_inward,
                              const SurfaceView& view, const Contour& edge, const SafeRegion& region);
 
-/// The intended path and the rays along which its waypoints move: away from the nearest point of the tumour edge.
+/// The intended path, and the rays along which its waypoints move: away from the nearest point of the tumour edge, in
+/// the picture.
 class MovablePath {
  public:
   /// @throws CaseError for a waypoint that lies on the edge.
@@ -26,12 +27,13 @@ class MovablePath {
 
   struct Moved {
     ToolPath path;
-    std::vector<double> offset_mm;         ///< as reached
-    std::vector<std::uint8_t> is_limited;  ///< 1 where it is less than was asked for
+    std::vector<double> offset_mm;         ///< reached
+    std::vector<std::uint8_t> is_limited;  ///< 1 where it is less than requested
   };
-  /// The path with its waypoints `offset_mm` from their intended places, each as far as the region lets it.
+  /// Returns the path with its waypoints `offset_mm` from their intended places, each as far as the region allows.
   [[nodiscard]] Moved at(const std::vector<double>& offset_mm) const;
-  /// Whether a moved path can be cut: it does not cross itself, and the tissue is thick enough everywhere.
+  /// Returns whether a moved path can be cut (see check_path): for example, it does not cross itself, and the tissue is
+  /// thick enough everywhere.
   [[nodiscard]] bool can_be_cut(const ToolPath& path) const;
 
  private:

@@ -10,18 +10,19 @@
 
 namespace incise {
 
-/// A scenario about a path that was cut: what real cuts are expected to err there, and how that answers to moves.
+/// A scenario, linear about a path that was cut: expected errors of real cuts along it, and their response to moves.
 struct LinearScenario {
-  std::size_t place = 0;  ///< in the list of scenarios
-  double weight = 0.0;    ///< of all weights
+  std::size_t place = 0;  ///< index in the list of scenarios
+  double weight = 0.0;    ///< as a share of all weights
   Eigen::VectorXd error_mm;
   Eigen::MatrixXd response;
 };
 
+/// Returns the scenarios' errors after a move of the waypoints, mm.
 [[nodiscard]] std::vector<ScenarioErrors> moved_errors(const std::vector<LinearScenario>& scenarios,
                                                        const Eigen::VectorXd& move);
 
-/// Cuts in every scenario along paths that lie beside an intended one.
+/// Makes and measures cuts in every scenario, along paths beside an intended one.
 class ScenarioCuts {
  public:
   struct Cut {
@@ -57,7 +58,7 @@ class ScenarioCuts {
   std::size_t simulations_ = 0;
 };
 
-/// @throws InvalidArgument naming what compensate_robust cannot use.
+/// @throws InvalidArgument or CaseError as compensate_robust.
 void require_scenarios(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                        const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,
                        const CutResidual& residual, const RobustSettings& settings);

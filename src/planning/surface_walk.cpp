@@ -11,7 +11,8 @@ namespace {
 constexpr int kRimDirections = 16;
 constexpr int kNormalDirections = 8;
 constexpr double kNormalRadiusMm = 2.0;
-/// How far inside the tissue the search for its far side begins: beyond the rounding of a point on the surface.
+/// Depth inside the tissue at which the search for its far side begins: more than the rounding of a point on the
+/// surface.
 constexpr double kSkinMm = 1e-4;
 constexpr int kMostSheets = 64;
 
@@ -62,7 +63,7 @@ std::optional<double> thickness_mm(const SurfaceQuery& surface, const Vec3& poin
     if (!hit) return std::nullopt;
     passed += hit->distance_mm;
     if (hit->normal.dot(axis) > 0.0) return passed;
-    passed += kSkinMm;  // still on the way in: the point lay a little above the surface
+    passed += kSkinMm;  // this face leads inwards: the point lay slightly above the surface
   }
   return std::nullopt;
 }

@@ -6,7 +6,7 @@
 
 namespace incise {
 
-/// A point for a message: "(1.00, -2.50, 3.00)".
+/// Formats a point for a message: "(1.00, -2.50, 3.00)".
 [[nodiscard]] std::string in_words(const Vec3& p);
 
 /// The surface as a picture along the approach: places are (x, y) of the view, each showing the topmost point.
@@ -18,11 +18,12 @@ class SurfaceView {
   [[nodiscard]] Vec3 approach() const { return -view_.z; }
   [[nodiscard]] Vec2 place_of(const Vec3& p) const { return view_.to_view(p).head<2>(); }
   [[nodiscard]] std::optional<SurfacePoint> at(const Vec2& place) const;
-  /// Whether all of a circle about a place (16 directions) shows the surface.
+  /// Returns whether the surface is seen all along a circle about a place (in 16 directions).
   [[nodiscard]] bool is_clear_of_rim(const Vec2& place, double radius_mm) const;
-  /// Unit normal averaged over 2 mm about a place, towards the observer; triangles alone would make the tool jitter.
+  /// Returns the unit normal averaged over 2 mm about a place, towards the observer; normals of single triangles would
+  /// make the tool jitter.
   [[nodiscard]] Vec3 smooth_normal(const Vec2& place) const;
-  /// Direction of the tool at a place. @pre the place shows the surface.
+  /// Returns the direction of the tool at a place. @pre the place shows the surface.
   [[nodiscard]] Vec3 tool_axis(const Vec2& place, AxisMode mode) const;
 
  private:
@@ -30,7 +31,7 @@ class SurfaceView {
   ViewFrame view_;
 };
 
-/// What check_path calls things in its messages: "where: field: found …".
+/// Names of things in check_path's messages: "where: field: found …".
 struct PathCheckWords {
   std::string where = "path";
   std::string course_field = "waypoints";

@@ -6,7 +6,7 @@
 namespace incise {
 namespace {
 
-/// Weight of the moves' detail against the error that is left: undoes a response of more than a third.
+/// Weight of the moves' detail against the remaining error: undoes a response of more than a third.
 constexpr double kDetailWeight = 0.1;
 
 }  // namespace
@@ -29,8 +29,8 @@ TissueResponse::TissueResponse(const PathCourse& course, double shift_mm, double
 std::vector<double> TissueResponse::answer(const std::vector<double>& error_mm) const {
   const auto n = static_cast<Eigen::Index>(error_mm.size());
   const Eigen::Map<const Eigen::VectorXd> error(error_mm.data(), n);
-  // Detail: what the response takes away from moves. 1 - |H|² of each wave, so none of a move that is the same all
-  // round.
+  // Detail is the part of the moves that the response removes: 1 − |H|² of each wave, so none of a move that is the
+  // same all round.
   const Eigen::MatrixXd seen = response_.transpose() * response_;
   const Eigen::MatrixXd system = (1.0 - kDetailWeight) * seen + kDetailWeight * Eigen::MatrixXd::Identity(n, n);
   std::vector<double> moves(error_mm.size());

@@ -17,11 +17,11 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kPointsInAChunk = 64;
-constexpr double kSlow = 0.03;        // change of the width in a step, as a share, below which steps are accelerated
-constexpr double kLeastRatio = 0.9;   // of two steps: no fit of surfaces converges faster for long
-constexpr double kWide = 0.25;        // in radii of the target
+constexpr double kSlow = 0.03;        // relative change of the width per step below which steps are accelerated
+constexpr double kLeastRatio = 0.9;   // of successive steps: no fit of surfaces converges faster for long
+constexpr double kWide = 0.25;        // in radii of the target: above this width the scale is held
 
-/// Adds one target point's share.
+/// Adds the contribution of one target point.
 void add(MatchSums& sums, const Vec3& x, double weight, const GaussSum& near, double noise) {
   const double all = near.weight + noise;
   if (!(all > 0.0)) return;
@@ -44,7 +44,7 @@ void add(MatchSums& sums, const MatchSums& part) {
   sums.source_squares += part.source_squares;
 }
 
-/// The rotation that turns y onto x best for Σ x yᵀ = cross, and what it gains: tr(crossᵀ R).
+/// The rotation R that best turns y onto x, given cross = Σ x yᵀ: it maximises the gain tr(crossᵀ R).
 struct BestRotation {
   Mat3 rotation = Mat3::Identity();
   double gain = 0.0;
@@ -71,7 +71,7 @@ BestRotation best_rotation(const Mat3& cross, int dimensions) {
   return best;
 }
 
-/// Mean squared distance of all pairs over the number of dimensions: what the width starts at.
+/// Returns the mean squared distance of all pairs divided by the number of dimensions: the square of the first width.
 double all_pairs_variance(const WeightedPoints& source, const WeightedPoints& target, const Similarity& t,
                           int dimensions) {
   const auto moments = [](const WeightedPoints& cloud) {
@@ -92,7 +92,7 @@ double all_pairs_variance(const WeightedPoints& source, const WeightedPoints& ta
          dimensions;
 }
 
-/// Root mean square movement between two transforms of centred points with this scatter (mean of y yᵀ).
+/// Returns the root mean square distance between two transforms of centred points with this scatter (mean of y yᵀ).
 double rms_step(const Similarity& a, const Similarity& b, const Mat3& scatter) {
   const Mat3 change = a.scale * a.rotation - b.scale * b.rotation;
   return std::sqrt(std::max(0.0, (change * scatter * change.transpose()).trace()) +
@@ -101,7 +101,7 @@ double rms_step(const Similarity& a, const Similarity& b, const Mat3& scatter) {
 
 using Acceleration = Anderson<8>;  // of scale, rotation, translation and width
 
-/// EM in normalised coordinates: the source centred, both over the target's radius.
+/// EM in normalised coordinates: both clouds centred and divided by the target's radius.
 class Expectation {
  public:
   Expectation(const Points& source, const Points& target, const DriftSettings& settings, Workers& workers)
@@ -122,9 +122,9 @@ class Expectation {
                        ? *settings_.first_sigma
                        : std::sqrt(all_pairs_variance(source_.front(), target_.front(), t, settings_.dimensions));
     const WeightedPoints* last_source = nullptr;
-    bool sees_all = false;  // the last steps see every point, whatever the width
+    bool sees_all = false;  // the last steps use every point, whatever the width
     Acceleration acceleration;
-    Mat3 origin = t.rotation;  // that the acceleration's rotation vectors start from
+    Mat3 origin = t.rotation;  // origin of the acceleration's rotation vectors
     double plain_step = 0.0;
     double ratio = 0.0;  // of two plain steps
     for (drift.iterations = 0; drift.iterations < settings_.max_iterations;) {
@@ -140,8 +140,8 @@ class Expectation {
       const double new_sigma = std::sqrt(std::max(0.0, next.variance));
       const double shrinking = std::abs(new_sigma - sigma);
       drift.last_step_mm = step;
-      // EM converges linearly: what is left is a geometric series. Its ratio is that of the plain steps, which the
-      // acceleration hides.
+      // EM converges linearly: the remaining steps form a geometric series. Its ratio is that of the plain steps;
+      // accelerated steps hide it.
       if (plain_step > 0.0) ratio = std::clamp(step / plain_step, 0.0, 0.98);
       const bool is_still =
           step / (1.0 - std::max(ratio, kLeastRatio)) < settings_.tolerance && shrinking < 1e-3 * sigma;
@@ -171,14 +171,14 @@ class Expectation {
   }
 
  private:
-  /// While the Gaussians are as wide as the clouds every point belongs to every other, and the likeliest scale is near
-  /// 0, from where EM does not come back: until they are narrower, the scale stays what it is.
+  /// Returns settings that hold the scale while the Gaussians are as wide as the clouds. Every point then belongs to
+  /// every other, and the likeliest scale is near 0, from which EM does not recover.
   [[nodiscard]] DriftSettings held_while_wide(double scale, double sigma) const {
     DriftSettings settings = settings_;
     if (sigma > kWide && !settings_.first_sigma) settings.scale = ScaleRange::fixed(scale);
     return settings;
   }
-  /// The unknowns: logarithm of the scale, rotation vector from `origin`, translation, width.
+  /// Returns the unknowns: logarithm of the scale, rotation vector from `origin`, translation, width.
   static Acceleration::Vector vector_of(const Similarity& t, double sigma, const Mat3& origin) {
     Acceleration::Vector v;
     v << std::log(t.scale), rotation_vector(t.rotation * origin.transpose()), t.translation_mm, sigma;
@@ -285,7 +285,7 @@ CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec
     drift.outcome = DriftOutcome::Degenerate;
     return drift;
   }
-  // In the coordinates of the search the source has mean 0, the target mean 0 and radius 1; scales keep their meaning.
+  // In the coordinates of the search the source has mean 0, the target mean 0 and radius 1; scales do not change.
   const double length = target_measure.radius;
   const auto to_search = [&](const Similarity& t) {
     return Similarity{t.scale, t.rotation, (t(source_measure.center) - target_measure.center) / length};
@@ -297,7 +297,7 @@ CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec
   };
   drift.T_target_source = to_search(start);
   if (!settings.first_sigma) {
-    // As published: middles on each other and sizes alike, as far as the range allows.
+    // As published: centroids coincide, and sizes are equal as far as the range allows.
     drift.T_target_source.scale = std::clamp(length / source_measure.radius, settings.scale.low, settings.scale.high);
     drift.T_target_source.translation_mm = Vec3::Zero();
   }

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kMostCellsPerPoint = 8.0;
 constexpr std::size_t kPlacesInAChunk = 64;
-constexpr long kCellsPerReach = 2;  // finer cells follow the ball more closely than one cube around it
+constexpr long kCellsPerReach = 2;  // cells smaller than the reach approximate the ball better than one cube
 
 }  // namespace
 
@@ -18,8 +18,7 @@ GaussField::GaussField(std::span<const Vec3> points, std::span<const double> wei
   for (const Vec3& p : points) box.extend(p);
   low_ = points.empty() ? Vec3(Vec3::Zero()) : Vec3(box.min());
   const Vec3 size = points.empty() ? Vec3(Vec3::Zero()) : Vec3(box.sizes());
-  // Narrow Gaussians in a large box would ask for more cells than there are points: then the cells stay larger than
-  // they need to be.
+  // Narrow Gaussians in a large box would need far more cells than there are points; the cells then stay larger.
   cell_ = kReach * sigma / kCellsPerReach;
   const auto cells_for = [&size](double cell) { return ((size / cell).array().floor() + 1.0).prod(); };
   while (cells_for(cell_) > kMostCellsPerPoint * static_cast<double>(points.size()) + 64.0) cell_ *= 1.2;
@@ -54,7 +53,7 @@ void GaussField::sort_into_cells(std::span<const Vec3> points, std::span<const d
 }
 
 GaussSum GaussField::at(const Vec3& place) const {
-  // Cells within reach on each axis; along x they lie side by side in memory, so that each row of cells is one range.
+  // Cells within reach on each axis. Along x they are contiguous in memory, so each row of cells is one range.
   std::array<long, 3> first{};
   std::array<long, 3> last{};
   GaussSum sum;

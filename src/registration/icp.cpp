@@ -13,15 +13,15 @@ namespace {
 using Vec7 = Eigen::Matrix<double, 7, 1>;
 using Mat7 = Eigen::Matrix<double, 7, 7>;
 
-constexpr double kWidths = 2.5;       // robust standard deviations that the weight's width shrinks to
-constexpr double kShrink = 0.7;       // of the width, per step at most
-constexpr double kLeastWidth = 1e-6;  // of the target's spacing: identical clouds
+constexpr double kWidths = 2.5;       // final width of the weight, in robust standard deviations
+constexpr double kShrink = 0.7;       // smallest factor by which the width changes per step
+constexpr double kLeastWidth = 1e-6;  // of the target's spacing: for identical clouds
 constexpr double kDamping = 1e-6;     // of the mean diagonal
 constexpr std::size_t kFewestPairs = 12;
 constexpr std::size_t kWatched = 4;  // motions by which convergence is judged
-constexpr double kJitter = 10.0;     // tolerances
+constexpr double kJitter = 10.0;     // largest single motion at convergence, in tolerances
 
-/// New nearest points let the pose jitter about its place: it has settled when the motions cancel.
+/// Whether the last motions cancel: changing nearest points let even a converged pose jitter.
 bool has_settled(const std::deque<Vec7>& last, double tolerance) {
   Vec7 mean = Vec7::Zero();
   double largest = 0.0;
@@ -42,7 +42,7 @@ double robust_sd(const std::vector<SurfacePair>& pairs, double width) {
 }
 
 Vec7 solve(Mat7 system, Vec7 right, double length, bool with_scale) {
-  // Unknowns in lengths: a turn or a stretch of 1 moves a point at `length` by as much.
+  // Unknowns as lengths: a turn or stretch of 1 in these units moves a point at distance `length` by 1.
   Vec7 units = Vec7::Ones();
   units.head<3>().setConstant(1.0 / length);
   units[6] = 1.0 / length;
@@ -80,8 +80,8 @@ namespace {
 struct NormalEquations {
   Mat7 system = Mat7::Zero();
   Vec7 right = Vec7::Zero();
-  Vec3 center = Vec3::Zero();  // that turns and stretches are about
-  double length = 0.0;         // rms distance of the points from it
+  Vec3 center = Vec3::Zero();  // of turns and stretches
+  double length = 0.0;         // rms distance of the points from the centre
   double weight = 0.0;
 };
 
@@ -106,19 +106,19 @@ NormalEquations equations_of(const std::vector<SurfacePair>& pairs, double width
   return e;
 }
 
-/// The motion that the equations ask for, with the scale kept in its range.
+/// Solves the equations for the motion, with the scale kept in its range.
 Vec7 bounded_motion(const NormalEquations& e, double scale, const ScaleRange& range) {
   const Vec7 motion = solve(e.system, e.right, e.length, !range.is_fixed());
   const double wanted = scale * std::exp(motion[6]);
   if (wanted >= range.low && wanted <= range.high) return motion;
-  // At the border of its range the scale is known; the rest is found for it.
+  // At the end of its range the scale is known; solve for the rest.
   const double change = std::log(std::clamp(wanted, range.low, range.high) / scale);
   Vec7 bounded = solve(e.system, e.right - change * e.system.col(6), e.length, false);
   bounded[6] = change;
   return bounded;
 }
 
-/// Pairs sought from both clouds, the rougher one's counting more.
+/// Returns pairs found from both clouds; those found from the rougher one count more.
 std::vector<SurfacePair> mutual_pairs(const SampledSurface& source, std::span<const std::size_t> of_source,
                                       const SampledSurface& target, std::span<const std::size_t> of_target,
                                       const Similarity& t, Workers& workers) {
@@ -152,7 +152,7 @@ Icp icp(const SampledSurface& source, const SampledSurface& target, const Simila
     const double wanted = std::max(kWidths * robust_sd(pairs, result.width), kLeastWidth * target.spacing);
     result.width = std::max(std::min(result.width, wanted), kShrink * result.width);
     const NormalEquations e = equations_of(pairs, result.width);
-    // Nothing within reach of the robust weight: there is no motion to find.
+    // Too little within reach of the robust weight to find a motion.
     result.is_degenerate = pairs.size() < kFewestPairs || !(e.weight > 1.0);
     if (result.is_degenerate) return result;
     Vec7 motion = bounded_motion(e, t.scale, settings.scale);

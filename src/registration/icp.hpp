@@ -9,11 +9,11 @@ namespace incise {
 
 struct IcpSettings {
   ScaleRange scale;
-  double first_width = 0.05;  ///< of the robust weight at the start, as a length in the clouds' unit
-  double tolerance = 1e-4;  ///< converged when the last four motions together move the source by less than this length
-                            ///< (rms), and none by ten times it
+  double first_width = 0.05;  ///< of the robust weight at the start, in the clouds' unit
+  double tolerance = 1e-4;  ///< converged when the mean of the last four motions moves the source by less than this
+                            ///< length (rms), and none of them by ten times as much
   int max_iterations = 60;
-  std::size_t max_points = 0;  ///< of the source that are used, evenly spread; 0: all
+  std::size_t max_points = 0;  ///< of each cloud that are used, evenly spread; 0: all
 };
 
 struct Icp {
@@ -22,21 +22,21 @@ struct Icp {
   bool is_degenerate = false;  ///< too few pairs
   int iterations = 0;
   double width = 0.0;  ///< of the robust weight at the end: about 2.5 times the noise
-  std::size_t pairs = 0;
+  std::size_t pairs = 0;  ///< in the last iteration
 };
 
-/// Iterated closest points, point to plane, with scale, pairs sought from both clouds: Gauss-Newton on distances along
-/// the mean of both normals, each weighted by exp(-d²/2τ²), where τ shrinks to 2.5 robust standard deviations of the
-/// distances. Directions that the surfaces do not fix are damped. Sources: [ChenMedioni1992], [Rusinkiewicz2019],
-/// [HollandWelsch1977].
+/// Point-to-plane ICP (iterated closest points) with scale and pairs from both clouds: Gauss-Newton on the distances
+/// along the mean of both normals, each weighted by exp(-d²/2τ²), where τ shrinks to 2.5 robust standard deviations of
+/// the distances. Directions that the surfaces do not determine are damped. Sources: [ChenMedioni1992],
+/// [Rusinkiewicz2019], [HollandWelsch1977].
 [[nodiscard]] Icp icp(const SampledSurface& source, const SampledSurface& target, const Similarity& start,
                       const IcpSettings& settings, Workers& workers);
 
-/// What one pair says about a small motion (rotation about `center`, translation, logarithm of the scale) of the moved
-/// source.
+/// Returns the gradient of a pair's distance with respect to a small motion of the moved source (rotation vector about
+/// `center`, translation, logarithm of the scale).
 [[nodiscard]] Eigen::Matrix<double, 7, 1> pair_gradient(const SurfacePair& pair, const Vec3& center);
 
-/// The motion applied after t.
+/// Returns t followed by the motion.
 [[nodiscard]] Similarity nudged(const Similarity& t, const Eigen::Matrix<double, 7, 1>& motion, const Vec3& center);
 
 }  // namespace incise

@@ -9,8 +9,8 @@
 namespace incise {
 namespace {
 
-constexpr double kCoarsest = 0.5;   // of the radius
-constexpr double kLeastGain = 0.7;  // clusters per point above which a level is not worth having
+constexpr double kCoarsest = 0.5;   // largest cubes, in radii
+constexpr double kLeastGain = 0.7;  // clusters per point above which a level is not worthwhile
 constexpr int kMostLevels = 12;
 
 WeightedPoints clusters_of(std::span<const Vec3> points, const Vec3& low, double cell) {

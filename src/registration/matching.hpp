@@ -7,9 +7,9 @@
 
 namespace incise {
 
-inline constexpr double kLeastSigma = 1e-6;  ///< of the radius: the clouds lie on each other
+inline constexpr double kLeastSigma = 1e-6;  ///< in radii; below it the clouds coincide
 
-/// What the E-step leaves for a rigid M-step: sums over all pairs, each with its probability.
+/// Result of the E-step for a rigid M-step: sums over all pairs, each with its probability P.
 struct MatchSums {
   double count = 0.0;           ///< N_P = Σ P
   Vec3 target = Vec3::Zero();   ///< Σ P x
@@ -19,12 +19,12 @@ struct MatchSums {
   double source_squares = 0.0;  ///< Σ P |y|²
 };
 
-/// The uniform background, in units of the Gaussians' sum: (2πσ²)^{D/2} w/(1-w) M/N.
+/// Returns the uniform background, in units of the Gaussians' sum: (2πσ²)^{D/2} w/(1-w) M/N.
 [[nodiscard]] double background(double sigma, double outlier_weight, int dimensions, double source_count,
                                 double target_count);
 
-/// E-step. The target is taken back to the source's frame, where the Gaussians are narrower by the scale. O(pairs
-/// within reach).
+/// E-step. The target is mapped back to the source's frame, where the width of the Gaussians is σ divided by the scale.
+/// O(pairs within reach).
 [[nodiscard]] MatchSums match(const WeightedPoints& source, const WeightedPoints& target, const Similarity& t,
                               double sigma, const DriftSettings& settings, Workers& workers);
 
@@ -35,7 +35,7 @@ struct MatchedTransform {
   bool is_degenerate = false;  ///< the matched points do not determine a rotation
 };
 
-/// M-step: the similarity, with its scale in the range, and the variance of greatest expected likelihood.
+/// M-step: returns the similarity, with its scale in the range, and the variance that maximise the expected likelihood.
 /// [Myronenko2010], eq. (16).
 [[nodiscard]] MatchedTransform best_transform(const MatchSums& sums, const DriftSettings& settings);
 

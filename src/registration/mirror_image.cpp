@@ -7,9 +7,9 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kFollowed = 2;  // poses of the search
-constexpr std::size_t kTried = 40;    // of the coarse stage
-constexpr std::size_t kRefined = 8;
+constexpr std::size_t kFollowed = 2;  // poses that the search returns
+constexpr std::size_t kTried = 40;    // poses of its coarse stage that are improved
+constexpr std::size_t kRefined = 8;   // and refined
 constexpr std::size_t kFewPoints = 2000;
 
 Vec3 reflected(Vec3 v) {
@@ -23,11 +23,11 @@ PointCloud reflected(PointCloud cloud) {
   return cloud;
 }
 
-/// The proper pose after a reflection in a principal plane, as a pose of the source reflected in x: the two
+/// Returns the proper pose after a reflection in each principal plane, as poses of the source reflected in x: the two
 /// reflections together are a rotation.
 std::vector<Similarity> reflected_in_principal_planes(const Similarity& proper, const Points& points) {
   Mat3 scatter = Mat3::Zero();
-  for (const Vec3& p : points) scatter += p * p.transpose();  // about the source's middle, which is the origin
+  for (const Vec3& p : points) scatter += p * p.transpose();  // about the source's centroid, which is the origin
   const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvectors();
   const Mat3 in_x = Vec3(-1.0, 1.0, 1.0).asDiagonal();
   std::vector<Similarity> poses;
@@ -47,7 +47,7 @@ Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& t
   std::vector<Similarity> starts = reflected_in_principal_planes(proper, source.cloud.points);
   if (search) {
     PoseSearchSettings few = *search;
-    few.rotations = std::max(8, few.rotations / 2);  // the principal planes are where it usually lies
+    few.rotations = std::max(8, few.rotations / 2);  // usually one of the principal planes gives the best pose
     few.followed = kTried;
     few.refined = kRefined;
     few.keep = kFollowed;

@@ -5,15 +5,14 @@
 
 namespace incise {
 
-/// Points of a cloud that a pose is scored by, the proper one and the mirrored one alike.
+/// Number of points used to score a pose, proper or mirrored.
 inline constexpr std::size_t kScorePoints = 4000;
 
-/// The best pose found for the source's mirror image: what the answer would be had one of the clouds been reflected.
-/// Starts: the proper pose with the source reflected in each of its three principal planes, which is where a shape that
-/// nearly is its own mirror image comes to lie; and, with `search`, a search over all rotations as for the source
-/// itself, of which few poses are followed. The pose itself is of no use to anyone and is not returned.
-/// @param proper  the pose that was found for the source as it is.  @param finish  of the last ICP, which sees all
-/// points.
+/// Returns the misfit of the best pose found for the source's mirror image. It fits well if one of the clouds was
+/// reflected. Starts: the proper pose with the source reflected in each of its three principal planes, where a nearly
+/// symmetric shape ends up; and, with `search`, a smaller search over all rotations. The pose itself is not returned.
+/// @param proper  the pose found for the source itself.  @param finish  settings of the last ICP, on all points.
+/// @param score_width  see overlap_score.
 [[nodiscard]] Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& target,
                                          const Similarity& proper, const std::optional<PoseSearchSettings>& search,
                                          const IcpSettings& finish, double score_width, Workers& workers,

@@ -16,11 +16,11 @@ namespace incise {
 namespace {
 
 using Matrix = Eigen::MatrixXd;
-constexpr std::size_t kRows = 256;      // of the basis at a time
-constexpr double kCenterSpacing = 0.5;  // of β
+constexpr std::size_t kRows = 256;      // rows of the basis per chunk
+constexpr double kCenterSpacing = 0.5;  // in units of β
 
-/// Points spread evenly over a cloud: each next one is the farthest from those taken, until none is farther than
-/// `spacing`.
+/// Returns points spread evenly over a cloud: each next one is the farthest from those chosen, until all points are
+/// within `spacing` of a chosen one or `most` are chosen.
 Points spread_centers(const Points& points, double spacing, std::size_t most) {
   Points centers{points.front()};
   std::vector<double> squared(points.size(), std::numeric_limits<double>::infinity());
@@ -57,7 +57,8 @@ class SmoothField {
 
   [[nodiscard]] std::size_t rank() const { return centers_.size(); }
 
-  /// (Φᵀ D Φ + λσ² G) W = Φᵀ (PX - D Y): displacements of all source points. Nothing if the system is not definite.
+  /// Solves (Φᵀ D Φ + λσ² G) W = Φᵀ (PX - D Y) and returns Φ W, the displacements of all source points (M x 3); nullopt
+  /// if the system cannot be solved.
   [[nodiscard]] std::optional<Matrix> displacements(const Points& source, const std::vector<GaussSum>& held,
                                                     double cost, Workers& workers) const {
     const auto rank = static_cast<Eigen::Index>(centers_.size());
@@ -113,7 +114,7 @@ NonrigidDrift nonrigid_drift(std::span<const Vec3> source, std::span<const Vec3>
     drift.outcome = DriftOutcome::Degenerate;
     return drift;
   }
-  // One origin and one length for both: the clouds lie where they lie.
+  // One origin and one length for both clouds, which keeps their relative position.
   const double length = source_measure.radius;
   const Points y = normalised(source, source_measure.center, length);
   const Points x = normalised(target, source_measure.center, length);

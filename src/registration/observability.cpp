@@ -18,13 +18,13 @@ using Vec7 = Eigen::Matrix<double, 7, 1>;
 using Mat7 = Eigen::Matrix<double, 7, 7>;
 
 constexpr std::size_t kMostPoints = 3000;
-// Distances of neighbouring points share their plane's error and the bend of the surface: fewer are independent than
-// there are pairs.
+// The distances of neighbouring points share the error of their plane and the curvature of the surface, so the number
+// of independent ones is smaller than the number of pairs.
 constexpr double kPairsPerIndependent = 4.0;
 constexpr double kLeastVisible = 1e-12;
 
 struct Overlap {
-  std::vector<SurfacePair> pairs;  // within three widths
+  std::vector<SurfacePair> pairs;  // within three robust standard deviations
   std::vector<std::size_t> indices;
   Vec3 center = Vec3::Zero();
   double length = 0.0;  // rms distance from the centre
@@ -50,7 +50,7 @@ Overlap overlap_of(const SampledSurface& source, const SampledSurface& target, c
   return overlap;
 }
 
-/// How a small motion moves a point: 3 x 7.
+/// Returns the displacement of a point by small motions, 3 x 7.
 Eigen::Matrix<double, 3, 7> motion_of(const Vec3& arm) {
   Eigen::Matrix<double, 3, 7> m;
   m.leftCols<3>() << 0.0, arm.z(), -arm.y(), -arm.z(), 0.0, arm.x(), arm.y(), -arm.x(), 0.0;
@@ -59,8 +59,8 @@ Eigen::Matrix<double, 3, 7> motion_of(const Vec3& arm) {
   return m;
 }
 
-/// Mean squared distance, each capped, of those source points that still lie above the target. (Where the cloud ends
-/// says nothing: it ends where the camera's picture does.)
+/// Returns the mean squared distance, each capped, of those source points that still lie above the target. (The cloud's
+/// edge carries no information: it is only the edge of the camera's picture.)
 double mean_square(const SampledSurface& source, const std::vector<std::size_t>& indices, const SampledSurface& target,
                    const Similarity& t, double cap, Workers& workers) {
   const std::vector<SurfacePair> pairs = pairs_of(source, indices, target, t, workers);
@@ -87,8 +87,8 @@ std::string name_of(const Vec7& direction, double length) {
   return text;
 }
 
-/// How far turns (rad), shifts and a stretch move points about the middle, rms. A turn about any axis moves a point by
-/// two thirds of its squared arm, on the average over all directions.
+/// Returns how far unit turns (rad), shifts and stretches move points about the centroid, rms. Averaged over all axes,
+/// the squared displacement by a turn is two thirds of the squared arm.
 Vec7 arms_of(double length) {
   Vec7 arms = Vec7::Ones();
   arms.head<3>().setConstant(std::sqrt(2.0 / 3.0) * length);
@@ -120,7 +120,7 @@ PoseObservability pose_observability(const SampledSurface& source, const Sampled
   const auto pairs = static_cast<double>(overlap.pairs.size());
   const Eigen::MatrixXd a = seen.topLeftCorner(motions, motions) / pairs;
   Eigen::MatrixXd b = moved_by.topLeftCorner(motions, motions) / pairs;
-  b.diagonal().array() += 1e-12 * b.trace();  // an overlap on a line has a turn that moves nothing
+  b.diagonal().array() += 1e-12 * b.trace();  // if the overlap is a line, one turn moves nothing
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(a, b);
   const double step =
       std::max({2.0 * std::max(target.spacing, t.scale * source.spacing), 3.0 * overlap.rms, 0.01 * overlap.length});

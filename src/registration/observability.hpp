@@ -6,20 +6,18 @@
 
 namespace incise {
 
-/// How well the surfaces fix the transform: see PoseObservability. @param width  of the residuals' robust weight, as
-/// icp leaves it.
+/// Returns how well the surfaces determine the transform t. @param width  of the robust weight at the end of ICP.
 [[nodiscard]] PoseObservability pose_observability(const SampledSurface& source, const SampledSurface& target,
                                                    const Similarity& t, double width, bool with_scale,
                                                    Workers& workers);
 
-/// Puts another covariance (about `center`, rms arm `length`) in the place of the one from noise alone, and the
-/// standard deviations that follow from it. What the shapes alone say (visible, sharpness) stays; the weakest motion
-/// does, too.
+/// Sets the covariance (about `center`, with rms arm `length`) and the standard deviations that follow from it, except
+/// that of the weakest motion. Does not change what follows from the shapes alone (visible, sharpness).
 void set_covariance(PoseObservability& certificate, const Eigen::Matrix<double, 7, 7>& covariance, const Vec3& center,
                     double length);
 
-/// Finds the weakest motion and its standard deviation in the covariance, with a turn and a stretch as large as they
-/// move points at the rms arm `length`.
+/// Sets the weakest motion and its standard deviation from the covariance. Turns and stretches are measured by how far
+/// they move points at the rms arm `length`.
 void find_weakest(PoseObservability& certificate, double length);
 
 }  // namespace incise

@@ -12,9 +12,9 @@
 namespace incise {
 namespace {
 
-// Widths of the coarse drift, as shares of the target's radius: wide enough to pull a tongue half a turn of the spiral,
-// narrow enough at the end for the clusters. Beside the middle less wide: all of a cloud within reach pulls the middles
-// together, and an offset would be lost.
+// Widths of the coarse drift, in radii of the target: wide enough at first to pull a tongue over half a turn of
+// the spiral of starts, narrow enough at the end for the clusters. Starts beside the centroid are narrower: a Gaussian
+// that reaches the whole cloud pulls the centroids together, and the offset would be lost.
 constexpr double kFirstSigma = 0.35;
 constexpr double kFirstSigmaBeside = 0.18;
 constexpr double kLastSigma = 0.07;
@@ -24,11 +24,11 @@ constexpr std::size_t kSearchPoints = 500;
 constexpr std::size_t kFollowPoints = 400;
 constexpr int kFollowSteps = 15;
 constexpr std::size_t kFinePoints = 2000;
-constexpr double kAlike = 0.08;             // rms distance, in radii, below which two poses are one
-constexpr double kLeastSide = 0.3;          // length of the mean normal above which a cloud has a side
-constexpr double kLargestSideAngle = 75.0;  // degrees between the sides' normals
+constexpr double kAlike = 0.08;             // rms distance, in radii, up to which two poses count as one
+constexpr double kLeastSide = 0.3;          // length of the mean normal above which a cloud has an upper side
+constexpr double kLargestSideAngle = 75.0;  // degrees between the mean normals
 
-/// The first level with enough clusters to show the shape.
+/// Returns the first level with enough clusters to show the shape.
 const WeightedPoints& coarse_level(const std::vector<WeightedPoints>& levels) {
   for (const WeightedPoints& level : levels) {
     if (level.points.size() >= kCoarsePoints) return level;
@@ -42,9 +42,9 @@ Vec3 mean_of(const Points& points) {
   return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
 }
 
-/// Where the source's middle is to lie beside the target's, in the source's frame: on it first, then to either side
-/// along its two longer axes. Where each cloud shows only a part, the middles do not correspond: 60 % of a strip that
-/// are shared put them 1.4 spreads apart.
+/// Returns offsets of the source's centroid from the target's, in the source's frame: zero first, then to either side
+/// along the source's two longer axes. If each cloud shows only a part, the centroids do not correspond: for two parts
+/// of a strip with 60 % in common they are 1.4 standard deviations apart.
 std::vector<Vec3> offsets_of(const Points& points) {
   Mat3 scatter = Mat3::Zero();
   for (const Vec3& p : points) scatter += p * p.transpose() / static_cast<double>(points.size());
@@ -57,13 +57,13 @@ std::vector<Vec3> offsets_of(const Points& points) {
   return offsets;
 }
 
-/// Where a coarse drift begins, and how wide.
+/// First transform and width of a coarse drift.
 struct Start {
   Similarity transform;
   double sigma = 0.0;
 };
 
-/// Every rotation with every offset.
+/// Combines every rotation with every offset.
 std::vector<Start> starts_of(const SampledSurface& source, const SampledSurface& target,
                              const PoseSearchSettings& settings) {
   const bool knows_sides = source.has_oriented_normals && target.has_oriented_normals;
@@ -73,7 +73,7 @@ std::vector<Start> starts_of(const SampledSurface& source, const SampledSurface&
   const double least_cosine = std::cos(units::rad_from_deg(kLargestSideAngle));
   const std::vector<Vec3> offsets = offsets_of(source.cloud.points);
   const double radius = measure_of(source.cloud.points).radius;
-  // With bounds the scale starts between them; without, as the sizes say.
+  // With bounds the scale starts between them; without, it is the ratio of the sizes.
   const double scale = settings.scale.high < 1e6 && settings.scale.low > 0.0
                            ? std::sqrt(settings.scale.low * settings.scale.high)
                            : std::clamp(1.0 / radius, settings.scale.low, settings.scale.high);
@@ -87,7 +87,7 @@ std::vector<Start> starts_of(const SampledSurface& source, const SampledSurface&
   return starts;
 }
 
-/// Few steps with a width that shrinks on schedule: it cannot stall, and every start costs the same.
+/// Runs a few steps with a width that shrinks on a schedule: it cannot stall, and every start costs the same.
 Similarity coarse_drift(const WeightedPoints& source, const WeightedPoints& target, const Start& start,
                         const DriftSettings& settings, Workers& alone) {
   Similarity t = start.transform;
@@ -101,7 +101,7 @@ Similarity coarse_drift(const WeightedPoints& source, const WeightedPoints& targ
   return t;
 }
 
-/// The best poses of which no two are alike.
+/// Returns the best `keep` distinct poses, best first.
 std::vector<Pose> distinct(std::vector<Pose> poses, std::span<const Vec3> source, std::size_t keep) {
   std::stable_sort(poses.begin(), poses.end(), [](const Pose& a, const Pose& b) { return a.score > b.score; });
   std::vector<Pose> kept;
@@ -115,7 +115,7 @@ std::vector<Pose> distinct(std::vector<Pose> poses, std::span<const Vec3> source
   return kept;
 }
 
-/// How poses are brought closer: ICP with so many steps on so many points, and the width of the score after it.
+/// Settings of `refine`: those of ICP, and the width of the score afterwards.
 struct Refinement {
   ScaleRange scale;
   double first_width = 0.0;
@@ -124,7 +124,7 @@ struct Refinement {
   double score_width = 0.0;
 };
 
-/// Every pose brought closer by ICP and scored anew.
+/// Improves every pose by ICP and scores it again.
 void refine(std::vector<Pose>& poses, const SampledSurface& source, const SampledSurface& target, const Refinement& how,
             Workers& workers) {
   const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), how.points);
@@ -161,7 +161,7 @@ std::vector<Mat3> even_rotations(int count) {
 }
 
 bool differ(const Similarity& a, const Similarity& b, std::span<const Vec3> source, double limit) {
-  // Rough is enough: every so many points.
+  // A few points are accurate enough.
   Points few;
   for (const std::size_t i : spread_indices(source.size(), 50)) few.push_back(source[i]);
   return rms_difference_mm(a, b, few) > limit;
@@ -197,7 +197,7 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
       pose.score = overlap_score(source, asked, target, pose.transform, 3.0 * settings.score_width);
     });
   }
-  // Rough poses can be compared only roughly. Many of them, brought closer with few points, show which are worth more.
+  // Scores of rough poses rank them only roughly. Improving many of them with few points shows which deserve more work.
   poses = distinct(std::move(poses), source.cloud.points, settings.followed);
   const Refinement few{settings.scale, 2.0 * kLastSigma, kFollowSteps, kFollowPoints, 2.0 * settings.score_width};
   refine(poses, source, target, few, workers);

@@ -13,10 +13,10 @@ struct PoseSearchSettings {
   ScaleRange scale;
   double outlier_weight = 0.3;
   int rotations = 96;
-  double score_width = 0.02;  ///< of overlap_score, as a length
-  std::size_t keep = 8;
-  std::size_t followed = 160;  ///< poses of the coarse stage that are brought closer with few points, the best ones
-  std::size_t refined = 12;    ///< of those, the best ones, that are refined
+  double score_width = 0.02;  ///< width of overlap_score, a length
+  std::size_t keep = 8;        ///< poses to return at most
+  std::size_t followed = 160;  ///< best poses of the coarse stage, which are improved with few points
+  std::size_t refined = 12;    ///< best of those, which are refined
 };
 
 struct Pose {
@@ -25,18 +25,20 @@ struct Pose {
 };
 
 struct PoseSearch {
-  std::vector<Pose> poses;  ///< best first, no two alike
+  std::vector<Pose> poses;  ///< best first, all distinct
   int starts = 0;
 };
 
-/// Rotations spread evenly over all of them: the super-Fibonacci spiral of unit quaternions. Source: [Alexa2022].
+/// Returns `count` rotations spread evenly over all rotations: the super-Fibonacci spiral of unit quaternions. Source:
+/// [Alexa2022].
 [[nodiscard]] std::vector<Mat3> even_rotations(int count);
 
-/// Whether two poses of this source mean different things: they take its points more than `limit` apart (rms).
+/// Whether two poses of this source are distinct: they map its points more than `limit` apart (rms).
 [[nodiscard]] bool differ(const Similarity& a, const Similarity& b, std::span<const Vec3> source, double limit);
 
-/// Rough poses, from drifts on coarse clusters with a width that shrinks on a fixed schedule, from every start, then
-/// refined by ICP on a part of the points. Both clouds are centred, in units of the target's radius.
+/// Searches rough poses: runs drifts on coarse clusters from every start, with a width that shrinks on a fixed
+/// schedule, then refines the best by ICP on a part of the points. @pre both clouds are centred, in units of the
+/// target's radius.
 [[nodiscard]] PoseSearch search_poses(const SampledSurface& source, const SampledSurface& target,
                                       const PoseSearchSettings& settings, Workers& workers, Monitor& monitor);
 

@@ -21,25 +21,25 @@ namespace incise {
 namespace {
 
 constexpr std::size_t kFewestPoints = 12;
-constexpr std::size_t kCandidates = 3;  // poses that see all points
+constexpr std::size_t kCandidates = 3;  // poses that are carried through drift and ICP
 constexpr std::size_t kRivalPoints = 1000;
 constexpr int kDriftSteps = 60;
 constexpr int kFinishSteps = 100;
-constexpr double kFinalSigma = 0.06;        // of the drift that starts from a pose of the search
-constexpr double kFinalWidth = 0.08;        // of the ICP after the drift
-constexpr double kDifferent = 0.08;         // rms distance, in radii, from which on a pose counts as another one
-constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera sees finer
-constexpr double kMirrorRatio = 0.95;       // of scores and residuals: beyond it source or mirror image fits better
-constexpr double kUsualScale = 0.05;        // both sensors are metric
-// Rms of what no change of the pose explains, in the target's radius: 0.08 mm on a tongue. Where nothing has settled
-// 0.01 mm is found, and 0.2 to 0.3 mm of a settling by 1 mm.
+constexpr double kFinalSigma = 0.06;        // first width of the drift that starts from a pose of the search
+constexpr double kFinalWidth = 0.08;        // first width of the ICP after the drift
+constexpr double kDifferent = 0.08;         // rms distance, in radii, above which two poses are distinct
+constexpr double kLeastScoreWidth = 0.002;  // in radii: no camera resolves less
+constexpr double kMirrorRatio = 0.95;       // ratio of scores or residuals below which one clearly fits better
+constexpr double kUsualScale = 0.05;        // largest usual deviation of the scale from 1: both sensors are metric
+// Settling is suspected above this rms of the smooth part that no change of the pose explains, in radii of the target:
+// 0.08 mm on a tongue. It is 0.01 mm where nothing has settled, and 0.2 to 0.3 mm where tissue has settled by 1 mm.
 constexpr double kSettled = 0.003;
-// The same of all of it, a motion or not: 0.5 mm on a tongue. Up to 0.4 mm are found where nothing has settled. Without
-// this a step across the tissue, which looks like a tilt, would not be suspected.
+// Likewise for the whole smooth part: 0.5 mm on a tongue. It is up to 0.4 mm where nothing has settled. Without this
+// limit a step across the tissue, which looks like a tilt, would not be suspected.
 constexpr double kSettledOrMoved = 0.02;
-constexpr double kAtLimit = 1e-6;           // relative: a scale that near to an end of its range stands there
+constexpr double kAtLimit = 1e-6;           // relative distance up to which a scale is at an end of its range
 
-/// Both clouds about the target's middle, in units of its radius, and the way back.
+/// Maps transforms to and from the frame of the search: each cloud centred, in units of the target's radius.
 struct Frame {
   Vec3 source_center;
   Vec3 target_center;
@@ -67,7 +67,7 @@ void require_usable(const PointCloud& cloud, const char* name) {
   }
 }
 
-/// A cloud with too many points for the drift, as clusters of about the number asked for.
+/// Returns a cloud with too many points for the drift as at most `most` clusters; a smaller cloud unchanged.
 Points thinned(const Points& points, std::size_t most) {
   if (points.size() <= most) return points;
   const PointCloud cloud{points, {}};
@@ -77,7 +77,7 @@ Points thinned(const Points& points, std::size_t most) {
   return few.points;
 }
 
-/// One pose carried through drift and ICP on all points.
+/// One pose after drift and ICP on all points.
 struct Candidate {
   Similarity transform;
   double score = 0.0;
@@ -152,8 +152,8 @@ class Registering {
   Candidate carried_through(const Similarity& start) {
     Candidate drifted = by_drift(start);
     if (!settings_.finish_with_icp) return drifted;
-    // The drift pulls parts without a counterpart towards the rest; where that leads astray, the search's pose is the
-    // better start.
+    // The drift pulls parts without a counterpart towards the rest; if that leads it astray, the pose of the search is
+    // a better start.
     Candidate finished = by_icp(drifted.is_degenerate ? start : drifted.transform);
     if (!settings_.start) {
       Candidate direct = by_icp(start);
@@ -171,7 +171,7 @@ class Registering {
     drift.outlier_weight = settings_.outlier_weight;
     drift.max_iterations = settings_.max_iterations;
     if (!settings_.start) drift.first_sigma = kFinalSigma;
-    // Where the finish has the last word the drift need not be followed to its end.
+    // If the ICP finish follows, the drift need not converge.
     if (settings_.finish_with_icp) drift.max_iterations = std::min(drift.max_iterations, kDriftSteps);
     const CoherentPointDrift done =
         rigid_drift(thinned(source_.cloud.points, settings_.drift_points),
@@ -223,7 +223,7 @@ class Registering {
     to_millimetres(result.certificate);
   }
 
-  /// The best pose once more, together with the settling. Its score stays that of the shapes as they are.
+  /// Finds the best pose once more, together with the settling. Keeps the score without settling.
   std::optional<SettledPose> settled_from(Candidate& best) const {
     if (!(settings_.settling_mm > 0.0)) return std::nullopt;
     SettlingSettings settings;
@@ -236,11 +236,11 @@ class Registering {
     return settled;
   }
 
-  /// What noise and settling leave open, in place of what noise alone does.
+  /// Stores the settling, and replaces the covariance from noise alone by that from noise and settling.
   void take_over(Registration& result, const SettledPose& settled) const {
     result.settled_rms_mm = frame_.length * settled.settled_rms;
     result.settled_max_mm = frame_.length * settled.settled_largest;
-    if (settled.is_degenerate) return;  // told by the outcome; there is no covariance
+    if (settled.is_degenerate) return;  // the outcome reports it; there is no covariance
     set_covariance(result.certificate, settled.covariance, settled.center, settled.length);
     find_weakest(result.certificate, settled.length);
   }
@@ -253,7 +253,7 @@ class Registering {
     result.fit_fraction = misfit.fit_fraction;
   }
 
-  /// Before settling, which would take up a part of what tells the two apart.
+  /// Compares source and mirror image. Call before settling, which would absorb part of the difference between them.
   void compare_with_mirror_image(Registration& result, const Candidate& best) {
     std::optional<PoseSearchSettings> search;
     if (!settings_.start) search = search_settings();
@@ -263,8 +263,8 @@ class Registering {
     result.shape_rmse_mm = proper.rmse * frame_.length;
     result.mirror_score = mirror.score;
     result.mirror_rmse_mm = mirror.rmse * frame_.length;
-    // All have to say so: where tissue has settled, a few of the mirror image's points may lie better and most worse;
-    // and of a symmetric shape two halves that overlap a little have mirror images that overlap altogether.
+    // All conditions must hold. If tissue has settled, a few points of the mirror image may fit better and most of them
+    // worse; and if the clouds are two halves of a symmetric shape, one may cover the other's mirror image completely.
     is_mirrored_ = proper.score < kMirrorRatio * mirror.score && mirror.rmse < kMirrorRatio * proper.rmse &&
                    proper.score_above < kMirrorRatio * mirror.score_above &&
                    mirror.fit_fraction >= settings_.least_fit && mirror.rmse <= settings_.largest_rmse;
@@ -279,7 +279,8 @@ class Registering {
       result.rival = frame_.outwards(t);
     };
     for (const Candidate& candidate : candidates) consider(candidate.transform, candidate.score);
-    // The search leaves its poses where they were good enough to be ranked: some of them slide on into the best one.
+    // The search stops when its poses are good enough to be ranked: after convergence some of them coincide with the
+    // best.
     for (const Pose& pose : poses) {
       IcpSettings settings;
       settings.scale = settings_.scale;
@@ -291,7 +292,7 @@ class Registering {
     }
   }
 
-  /// The outcome, the gravest reason first.
+  /// Sets the outcome and the reasons, worst first.
   void judge(Registration& result, const Candidate& best) const {
     const PoseObservability& c = result.certificate;
     result.outcome = RegistrationOutcome::Converged;
@@ -350,7 +351,8 @@ class Registering {
     }
   }
 
-  /// Tissue that has settled passes for a shift or a tilt where settling is not looked for.
+  /// Adds a reason if the tissue may have settled and settling was not searched for: it would pass for a shift or a
+  /// tilt.
   void note_settling(Registration& result, const ShapeResidual& shape) const {
     const bool is_suspected = shape.apart_rms > kSettled || shape.settled_rms > kSettledOrMoved;
     if (settings_.settling_mm > 0.0 || !is_suspected) return;

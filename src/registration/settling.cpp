@@ -22,26 +22,27 @@ using Vec7 = Eigen::Matrix<double, 7, 1>;
 
 constexpr std::size_t kMostSettlingPoints = 3000;
 constexpr std::size_t kMostCenters = 200;
-constexpr double kSettlingCenterSpacing = 0.6;  // of the range
+constexpr double kSettlingCenterSpacing = 0.6;  // in units of the range
 constexpr double kPatch = 3.5;          // radius of a fitted patch, in spacings of the target
 constexpr std::size_t kFewestInPatch = 10;
-constexpr double kRim = 0.35;            // how far a patch's middle may lie from its place, in its radii
+constexpr double kRim = 0.35;            // largest distance of a patch's centroid from its point, in patch radii
 constexpr double kLeastPatchAgreement = 0.3;  // cosine between a point's normal and those of its patch
-constexpr double kFarthest = 0.15;       // from the target, in the clouds' unit: beyond lies something else
-constexpr double kWeightWidths = 2.5;    // robust standard deviations of Welsch's weight
+constexpr double kFarthest = 0.15;       // from the target, in the clouds' unit: anything farther is another object
+constexpr double kWeightWidths = 2.5;    // width of Welsch's weight, in robust standard deviations
 constexpr double kSettlingPairsPerIndependent = 1.2;
 constexpr double kRidge = 1e-6;
 constexpr std::size_t kPatchesInAChunk = 32;
 
-/// A source point against the target's patch above or below it.
+/// A source point and its distance from the target's patch above or below it.
 struct Patch {
-  std::size_t row = 0;    // among the points asked
-  Vec3 place;             // of the source point, without settling
+  std::size_t row = 0;    // index into Asked::indices
+  Vec3 place;             // position of the source point, without settling
   Vec3 normal;            // the source's
   double distance = 0.0;  // from the patch to `place` along the normal
   double weight = 0.0;    // falls to 0 towards the target's rim
 };
 
+/// The source points that are used, and the Gaussians of the settling.
 struct Asked {
   std::vector<std::size_t> indices;
   Points centers;
@@ -54,7 +55,7 @@ double gaussian(const Vec3& a, const Vec3& b, double range) {
   return std::exp(-0.5 * (a - b).squaredNorm() / (range * range));
 }
 
-/// Every next one is the farthest from those taken.
+/// Returns centres spread evenly over the points: each next one is the farthest from those chosen.
 Points spread_centers(const PointCloud& cloud, const std::vector<std::size_t>& indices, double spacing) {
   Points centers{cloud.points[indices.front()]};
   std::vector<double> squared(indices.size(), std::numeric_limits<double>::infinity());
@@ -90,10 +91,10 @@ Asked asked_of(const PointCloud& source, double range) {
   return asked;
 }
 
-/// Height of the target above `place` along a normal: of a quadratic fitted to its points within the patch.
+/// Height of the target above a place along a normal, from a quadratic fitted to the target's points in the patch.
 struct Height {
   double value = 0.0;
-  double off_center = 0.0;  // of the points' middle, in radii
+  double off_center = 0.0;  // distance of the points' centroid from the place, in patch radii
 };
 std::optional<Height> height_above(const SampledSurface& target, const Vec3& place, const Vec3& normal, double radius) {
   const Vec3 first = normal.unitOrthogonal();
@@ -184,8 +185,8 @@ class Settling {
     return cloud;
   }
 
-  /// What of the settling is left once the pose has taken up as much of it as it can: the rest of it the clouds cannot
-  /// tell from a motion, and only its size before it was looked for decides between the two.
+  /// Measures the part of the settling that remains after the pose has absorbed as much of it as it can. The clouds
+  /// cannot distinguish the absorbed part from a motion; only the prior on the settling's size decides between the two.
   void measure_apart(const Vector& settled) {
     const std::vector<Patch> found = patches();
     const Eigen::Index motions = settings_.scale.is_fixed() ? kMotions - 1 : kMotions;
@@ -235,7 +236,7 @@ class Settling {
     result_.length = std::sqrt(squares / static_cast<double>(found.size()));
   }
 
-  /// With turns and the stretch in lengths.
+  /// Returns pair_gradient with turns and the stretch in units of length.
   [[nodiscard]] Vec7 unit_gradient(const Patch& patch) const {
     Vec7 g = pair_gradient({.source = patch.row, .place = patch.place, .normal = patch.normal}, result_.center);
     g.head<3>() /= result_.length;
@@ -267,7 +268,7 @@ class Settling {
     bool is_scale_held = settings_.scale.is_fixed();
     const double wanted = result_.transform.scale * std::exp(motion[6] / result_.length);
     if (!is_scale_held && (wanted < settings_.scale.low || wanted > settings_.scale.high)) {
-      // At the border of its range the scale is known; the rest is found for it.
+      // At the end of its range the scale is known; solve for the rest.
       const double kept = std::clamp(wanted, settings_.scale.low, settings_.scale.high);
       hold_scale(system, right, result_.length * std::log(kept / result_.transform.scale));
       factor.compute(system);
@@ -296,7 +297,7 @@ class Settling {
     result_.transform = nudged(result_.transform, units.cwiseProduct(motion.head<kMotions>()), result_.center);
     const Matrix columns = factor.solve(Matrix::Identity(motion.size(), kMotions));
     result_.covariance = units.asDiagonal() * columns.topRows<kMotions>() * units.asDiagonal();
-    if (is_scale_held) {  // its place holds what keeps the system solvable, no variance
+    if (is_scale_held) {  // the entry of the scale only keeps the system solvable; it is no variance
       result_.covariance.row(6).setZero();
       result_.covariance.col(6).setZero();
     }

@@ -10,13 +10,13 @@
 namespace incise {
 namespace {
 
-constexpr double kNeighbourhood = 0.2;    // radius of a neighbourhood, in the target's: some 10 mm across on a tongue
-constexpr std::size_t kFewest = 8;        // target points in a neighbourhood, for noise to cancel
-constexpr double kFarthestFromSource = 0.15;  // from the source, in the target's radius: beyond lies something else
-constexpr double kUsualSettling = 0.035;  // in the target's radius: 1 mm on a tongue
-constexpr double kOfMedian = 1.2533;      // standard error of a median over that of a mean, of normal noise
-constexpr double kOfDeviation = 1.4826;   // standard deviation over the median absolute deviation, of normal noise
-constexpr double kNineTenths = 1.645;     // standard deviations that nine tenths of normal noise keep within
+constexpr double kNeighbourhood = 0.2;    // radius of a neighbourhood, in radii of the target: 10 mm across on a tongue
+constexpr std::size_t kFewest = 8;        // target points in a neighbourhood, for noise to average out
+constexpr double kFarthestFromSource = 0.15;  // in radii of the target: anything farther away is another object
+constexpr double kUsualSettling = 0.035;  // in radii of the target: 1 mm on a tongue
+constexpr double kOfMedian = 1.2533;      // standard error of a median over that of a mean, for normal noise
+constexpr double kOfDeviation = 1.4826;   // standard deviation over the median absolute deviation, for normal noise
+constexpr double kNineTenths = 1.645;     // standard deviations within which nine tenths of normal noise lie
 constexpr double kShare = 0.9;            // of the neighbourhoods: the rest may be a rim, a hole or a hair
 
 /// Height of a target point above the source's surface, along the normal of the source's nearest point.
@@ -41,7 +41,8 @@ std::vector<HeightThere> heights(const PointCloud& source, const SampledSurface&
   return found;
 }
 
-/// What of the heights' median is not their noise: the part beyond the standard error that nine tenths of noise keep within.
+/// Returns the part of the heights' median that noise does not explain: the median less 1.645 standard errors, in
+/// squares.
 double beyond_noise(std::vector<double> heights) {
   const double common = median(heights);
   for (double& height : heights) height = std::abs(height - common);
@@ -49,7 +50,7 @@ double beyond_noise(std::vector<double> heights) {
   return std::sqrt(std::max(0.0, common * common - std::pow(kNineTenths * error, 2)));
 }
 
-/// The common height in the neighbourhood of each of the source's points that lie above enough of the target.
+/// Returns the common height in the neighbourhood of each of the source's points that has enough target points nearby.
 std::vector<double> common_heights(const Points& around, const std::vector<HeightThere>& heights) {
   std::vector<double> sizes;
   if (heights.empty()) return sizes;

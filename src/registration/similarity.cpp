@@ -32,7 +32,7 @@ Points moved(const Similarity& t, std::span<const Vec3> points) {
 }
 
 double angle_between_deg(const Mat3& a, const Mat3& b) {
-  // Half of the Frobenius distance is sqrt(2) sin(angle / 2): unlike the trace, exact for small angles.
+  // Half of the Frobenius distance is sqrt(2) sin(angle / 2): unlike the trace, accurate for small angles.
   const double s = (a - b).norm() / (2.0 * std::sqrt(2.0));
   return units::deg_from_rad(2.0 * std::asin(std::min(1.0, s)));
 }

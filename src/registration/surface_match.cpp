@@ -42,7 +42,7 @@ double target_share(const SampledSurface& source, const SampledSurface& target) 
 
 namespace {
 
-/// These two points as a pair, if the one may lie above the other.
+/// Returns the two points as a pair, if the source point lies above the target and the normals agree.
 std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t index, const Vec3& place,
                                   const SampledSurface& target, std::size_t near, const Similarity& t) {
   const Vec3& target_normal = target.cloud.normals[near];
@@ -60,7 +60,7 @@ std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t inde
   return pair;
 }
 
-/// The results of find(i) that are there, for i in [0, count), in order.
+/// Returns the pairs that find(i) finds for i in [0, count), in order.
 template <class Find>
 std::vector<SurfacePair> collected(std::size_t count, Workers& workers, const Find& find) {
   std::vector<std::vector<SurfacePair>> parts(Workers::chunk_count(count, kPairsInAChunk));
@@ -108,7 +108,7 @@ double overlap_score(const SampledSurface& source, std::span<const std::size_t> 
 
 Misfit misfit_of(const SampledSurface& source, std::span<const std::size_t> asked, const SampledSurface& target,
                  const Similarity& t, double width, double score_width, Workers& workers) {
-  constexpr double kBeside = 0.1;  // what is farther off lies beside the target's surface, not on it
+  constexpr double kBeside = 0.1;  // in radii of the target: a point farther away is not on its surface
   const std::size_t total = source.cloud.points.size();
   const std::vector<SurfacePair> pairs = pairs_of(source, spread_indices(total, total), target, t, workers);
   Misfit misfit;

@@ -51,7 +51,7 @@ struct CellLook {
   std::string text;
 };
 
-/// One of the two maps; speeds downwards, dullness to the right.
+/// Draws one of the two maps: speeds downwards, dullness to the right.
 template <class Look>
 void draw_map(SvgWriter& svg, const ScoreGrid& grid, double left, const std::string& name, const Look& look) {
   const auto columns = static_cast<double>(grid.dullnesses.size());

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view kBefore = ink::kSeries[0];
 constexpr std::string_view kAfter = ink::kSeries[1];
-/// Of the incisions of one side: the side's hue, in different lightness.
+/// Colours of the incisions of one side: the side's hue in different lightness.
 constexpr std::array<std::string_view, 4> kBeforeShades{"#6b6b6b", "#a3a39c", "#3d3d3d", "#8a7f6d"};
 constexpr std::array<std::string_view, 4> kAfterShades{"#0072b2", "#56b4e9", "#013f66", "#009e73"};
 
@@ -70,7 +70,7 @@ double widest_name(const std::vector<Box>& boxes) {
   return kCharacter * static_cast<double>(longest);
 }
 
-/// A name beneath its box: level where all names fit, else all of them slanted, whole in any case.
+/// Draws a name beneath its box: level if all names fit, else all are slanted. Names are never shortened.
 void draw_name(SvgWriter& svg, const Vec2& at, const std::string& name, bool is_slanted) {
   if (!is_slanted) {
     svg.text(at, name, "middle");
@@ -79,7 +79,7 @@ void draw_name(SvgWriter& svg, const Vec2& at, const std::string& name, bool is_
   svg.text(at, name, "end", fmt::format("transform=\"rotate(-35 {:.2f} {:.2f})\"", at.x(), at.y()));
 }
 
-/// Of errors without their sign: the zones are those of errors towards the tumour.
+/// Draws the zones of errors towards the tumour on the axis of absolute errors.
 void draw_absolute_zones(SvgWriter& svg, const PlotArea& area, const ZoneBorders& zones) {
   const auto band = [&](double from, double to, std::string_view color) {
     const double high = std::min(to, area.y_high);
@@ -91,7 +91,7 @@ void draw_absolute_zones(SvgWriter& svg, const PlotArea& area, const ZoneBorders
   band(-zones.positive_mm, 1e9, ink::kReached);
 }
 
-/// The zones' names beneath the panels: boxes fill a panel from end to end, and a name among them would lie on a
+/// Draws the zones' names beneath the panels: boxes fill a panel from end to end, so a name among them would lie on a
 /// whisker.
 void draw_zone_key(SvgWriter& svg, const Vec2& middle) {
   constexpr double kHalfWidth = 250.0;
@@ -199,7 +199,7 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const std::o
   const double limit = limit_of(series, zones);
   std::vector<double> widths;
   for (const ErrorSeries& one : series) widths.push_back(50.0 + 7.0 * static_cast<double>(one.name.size()));
-  constexpr double kFirstRight = 560.0;  // beyond it stands what dashed and full lines mean
+  constexpr double kFirstRight = 560.0;  // beyond it is the key to dashed and full lines
   const std::vector<Vec2> legend = legend_places(widths, {70.0, 24.0}, 760.0, kFirstRight);
   const double more = legend.back().y() - legend.front().y();  // rows of the legend beyond the first
   const PlotArea area{

@@ -21,7 +21,7 @@ constexpr std::string_view kTumorStroke = "stroke-width=\"2.6\" stroke-linejoin=
 constexpr std::string_view kIntendedStroke = "stroke-width=\"1.6\" stroke-linejoin=\"round\"";
 constexpr std::string_view kCorrectedStroke = "stroke-width=\"1.8\" stroke-dasharray=\"6 3\" stroke-linejoin=\"round\"";
 
-/// Where the picture plane, in mm, lies on the page, in px: y of the view points up.
+/// Map from the picture plane, in mm, to the page, in px; y of the view points up.
 struct Picture {
   ViewFrame view;
   Vec2 center_mm = Vec2::Zero();
@@ -60,8 +60,7 @@ void draw_path(SvgWriter& svg, const Picture& picture, const Contour& path, std:
   svg.polyline(picture.at(path), path.is_closed, fmt::format("fill=\"none\" stroke=\"{}\" {}", color, more));
 }
 
-/// Pieces of the incision that are marked by one broad stroke each: runs of points that are too close, or have reached
-/// the edge.
+/// Draws one broad stroke along each run of points that are too close or have reached the edge.
 void draw_marks(SvgWriter& svg, const std::vector<Vec2>& points, const ReportIncision& incision) {
   const std::size_t n = points.size();
   const bool is_closed = incision.incision.is_closed;
@@ -75,7 +74,7 @@ void draw_marks(SvgWriter& svg, const std::vector<Vec2>& points, const ReportInc
     svg.polyline(line, is_ring,
                  fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"13\" stroke-linejoin=\"round\"", color));
   };
-  // On a ring, runs are looked for from a place where the mark changes.
+  // On a ring, the search for runs starts where the mark changes.
   std::size_t start = 0;
   while (is_closed && start < n && color_of(start) == color_of((start + n - 1) % n)) ++start;
   if (start == n) {
@@ -133,7 +132,7 @@ void draw_color_bar(SvgWriter& svg, const Vec2& corner, const Vec2& size, double
   svg.text({corner.x() + size.x(), bottom + 34.0}, "farther", "end", kText);
 }
 
-/// The name of the axis end that points along a picture direction, if one does nearly.
+/// The name of the axis end that points nearly along a picture direction; empty: none does.
 std::string end_name(const Vec3& direction, const std::array<std::string, 6>& names) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto k = static_cast<std::size_t>(2 * axis);

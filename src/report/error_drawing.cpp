@@ -9,7 +9,7 @@ namespace incise {
 
 namespace {
 
-/// A zone as far as the plot shows it; nothing where it does not.
+/// Calls `draw` with the part of each zone that the plot shows.
 template <typename Draw>
 void for_each_zone(const PlotArea& area, double reached_mm, double close_mm, const std::string& close_name,
                    const Draw& draw) {

@@ -10,7 +10,8 @@ namespace incise {
 
 /// Shades the errors that leave too little tissue and those that reach the tumour edge, as far as the plot shows them.
 void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm);
-/// Their names at the right, on a pale rim: to be drawn after the data, which would run over them.
+/// Draws the zones' names at the right, on a pale rim. Call it after drawing the data, which would otherwise cover the
+/// names.
 void draw_error_zone_names(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm,
                            const std::string& close_name);
 

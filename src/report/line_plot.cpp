@@ -17,7 +17,7 @@ constexpr double kPlotWidth = 560.0;
 constexpr double kPlotHeight = 340.0;
 constexpr double kLeft = 82.0;  // room for numbers and the axis' name beside them
 constexpr double kMarkRadius = 3.2;
-constexpr double kTitleCharacter = 7.4;  // about as wide as one is
+constexpr double kTitleCharacter = 7.4;  // approximate width of one character, px
 constexpr double kNameCharacter = 6.4;
 constexpr double kTitleRow = 18.0;
 
@@ -26,7 +26,7 @@ struct AxisRange {
   double high = 0.0;
 };
 
-/// The range of one axis' values (their logarithms on a log axis), with some air; never empty.
+/// The range of one axis' values (their logarithms on a log axis), with a margin; never empty.
 AxisRange range_of(const LinePlot& plot, bool is_x) {
   const bool is_log = is_x ? plot.is_log_x : plot.is_log_y;
   AxisRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -50,7 +50,7 @@ AxisRange range_of(const LinePlot& plot, bool is_x) {
   return {range.low - air, range.high + air};
 }
 
-/// Where the marks stand on a logarithmic x axis, if they are few: sizes that double are read better than 1, 2, 5.
+/// Ticks at the marks of a logarithmic x axis, if these are few: sizes that double are easier to read than 1, 2, 5.
 std::vector<double> mark_ticks(const LinePlot& plot) {
   constexpr std::size_t kMost = 6;
   std::vector<double> ticks;
@@ -87,7 +87,7 @@ void draw_axis(SvgWriter& svg, const PlotArea& area, const AxisRange& range, con
     is_x ? draw_x_axis(svg, area, ticks, name) : draw_y_axis(svg, area, ticks, name);
     return;
   }
-  // The axis is drawn in logarithms, its numbers are what they stand for.
+  // The axis is drawn in logarithms; its numbers are the values.
   is_x ? draw_x_axis(svg, area, {}, name) : draw_y_axis(svg, area, {}, name);
   const double bottom = area.corner.y() + area.size.y();
   for (const double tick : ticks) {
@@ -171,7 +171,7 @@ std::string line_plot_svg(const LinePlot& plot) {
     widths.push_back(40.0 + kNameCharacter * static_cast<double>(series.name.size()));
   const std::vector<Vec2> legend =
       legend_places(widths, {kLeft, 42.0 + kTitleRow * static_cast<double>(title.size() - 1)}, kPlotWidth, kPlotWidth);
-  const double top = legend.back().y() + 16.0;  // of the axes; what more there is above them makes the picture taller
+  const double top = legend.back().y() + 16.0;  // of the axes; further legend rows above make the picture taller
   const double height = kPlotHeight + top - 58.0;
   SvgWriter svg(kPlotWidth, height, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
   svg.rectangle({0.0, 0.0}, {kPlotWidth, height}, "fill=\"#fff\"");

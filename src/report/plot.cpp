@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kRule = "stroke=\"#d9d9d4\" stroke-width=\"1\"";
 constexpr std::string_view kAxis = "stroke=\"#555\" stroke-width=\"1\"";
-constexpr double kYNameOffset = 54.0;  // of the name from the axis: numbers stand between
+constexpr double kYNameOffset = 54.0;  // distance of the name from the axis; the numbers are between them
 
 /// Linear interpolation in a table of colours that are evenly spaced over [0, 1].
 template <std::size_t N>

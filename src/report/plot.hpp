@@ -39,21 +39,21 @@ void draw_y_axis(SvgWriter& svg, const PlotArea& area, const std::vector<double>
 void draw_x_axis(SvgWriter& svg, const PlotArea& area, const std::vector<double>& ticks, std::string_view name,
                  std::string_view tick_suffix = "");
 
-/// Where each entry of a legend begins, px: beside the one before, or at the left of a new row where it would pass the
-/// right edge. @param widths  of the entries, px. @param first  where the first begins. @param right  of the rows;
-/// @param first_right  of the first, which may have something else at its end.
+/// Returns where each entry of a legend begins, px: beside the entry before, or at the left of a new row if it would
+/// pass the right edge. @param widths  of the entries, px. @param first  start of the first entry. @param right  edge
+/// of the rows. @param first_right  edge of the first row, which may have something else at its end.
 [[nodiscard]] std::vector<Vec2> legend_places(std::span<const double> widths, const Vec2& first, double right,
                                               double first_right);
 inline constexpr double kLegendRow = 18.0;  ///< from one row to the next, px
 
-/// The colours of what has one meaning in the whole report.
+/// Colours that have one meaning in the whole report.
 namespace ink {
 inline constexpr std::string_view kTumorEdge = "#009e73";
 inline constexpr std::string_view kIntended = "#111111";
 inline constexpr std::string_view kCorrected = "#0072b2";
 inline constexpr std::string_view kKerf = "#e69f00";
 inline constexpr std::string_view kTooClose = "#cc79a7";
-inline constexpr std::string_view kTooCloseText = "#8f3f70";  // words in its shade are read on it
+inline constexpr std::string_view kTooCloseText = "#8f3f70";  // a darker shade, for text
 inline constexpr std::string_view kReached = "#b3123f";
 inline constexpr std::array<std::string_view, 4> kSeries{"#6b6b6b", "#0072b2", "#d55e00", "#009e73"};
 }  // namespace ink
@@ -61,7 +61,7 @@ inline constexpr std::array<std::string_view, 4> kSeries{"#6b6b6b", "#0072b2", "
 /// Throws InvalidArgument unless the incision has a contour, one finite error per point, and finite contours.
 void require_drawable(const ReportIncision& incision);
 
-/// The limit of `style`, or what the incisions need if that is more.
+/// Returns the limit of `style`, or the limit that the incisions need if that is greater, mm.
 [[nodiscard]] double error_limit_of(const FigureStyle& style, std::span<const ReportIncision> incisions);
 
 }  // namespace incise

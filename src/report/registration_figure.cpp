@@ -67,7 +67,7 @@ void draw_histogram(SvgWriter& svg, const std::vector<double>& residuals, const 
     sizes.push_back(std::abs(r));
   }
   std::sort(sizes.begin(), sizes.end());
-  // All but the largest two in a hundred; those stand in the outermost bars.
+  // Leaves out the largest 2 %; the outermost bars count them.
   const double limit = rounded_up(std::max(1e-6, sizes[sizes.size() * 98 / 100]));
   std::vector<double> counts(kBins, 0.0);
   for (const double r : residuals) {

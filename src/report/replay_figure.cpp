@@ -32,7 +32,7 @@ void require_drawable(const ReplayPicture& p) {
   }
 }
 
-/// Every so many of `count` points, so that at most kMostPoints are drawn.
+/// Returns the stride through `count` points that draws at most kMostPoints.
 std::size_t stride_of(std::size_t count) {
   return (count + kMostPoints - 1) / kMostPoints;
 }
@@ -71,13 +71,13 @@ void draw_paths(SvgWriter& svg, const ReplayPicture& picture) {
   svg.text({20.0, 36.0}, fmt::format("at most {:.2g} mm off in the cut (circle)", picture.deviation_mm[worst]));
 }
 
-/// What the curves run over.
+/// The horizontal axis of a curve.
 struct Course {
   std::string name;
   std::vector<double> at;
 };
 
-/// Way of the tip, mm.
+/// Returns the distance travelled by the tip at each point, mm.
 std::vector<double> along(const Points& tip_mm) {
   std::vector<double> way{0.0};
   for (std::size_t i = 1; i < tip_mm.size(); ++i) way.push_back(way.back() + (tip_mm[i] - tip_mm[i - 1]).norm());

@@ -54,7 +54,7 @@ struct Renumbering {
   [[nodiscard]] int index_bytes() const { return old.size() <= 65536 ? 2 : 4; }
 };
 
-/// About how much base64 the frames take.
+/// Returns the approximate size of the frames as base64, bytes.
 std::size_t text_size(const ReportAnimation& animation, const Renumbering& vertices) {
   std::size_t bytes = 0;
   for (const ReportFrame& frame : animation.frames) {

@@ -17,15 +17,14 @@ namespace incise {
 /// kerf, tip?, axis}],
 ///  lines: [{label, color, closed, points: [...]}], tool: {diameter_mm, length_mm}, platform?: {point, normal},
 ///  total_frames}
-/// @param budget  bytes of base64 that one animation may take; when all frames need more, evenly spaced ones, with the
-/// first and the
-///                last, are kept.
+/// @param budget  bytes of base64 that one animation may take. If all frames need more, evenly spaced ones are kept,
+/// with the first and the last.
 [[nodiscard]] nlohmann::ordered_json animation_json(const ReportAnimation& animation, std::size_t budget);
 
 /// The mesh as JSON, same encoding: {low, step_mm, vertices, index_bytes, positions, tets, tet_count}.
 [[nodiscard]] nlohmann::ordered_json mesh_json(const TetMesh& mesh);
 
-/// JSON text that can stand inside an HTML script element: no "<" is left in it.
+/// Returns JSON text for use inside an HTML script element: it contains no "<".
 [[nodiscard]] std::string script_json(const nlohmann::ordered_json& value);
 
 }  // namespace incise

@@ -47,7 +47,7 @@ std::string viewer(std::string_view id, std::string_view label, const std::strin
       id, escaped(label), escaped(label), still);
 }
 
-/// What the curves on the slices are; each can be left out of the pictures.
+/// The legend of the curves on the slices; each curve can be hidden.
 std::string slice_legend(const CtPicture& ct) {
   std::string entries;
   const auto add = [&entries](bool is_there, std::string_view curve, std::string_view color, std::string_view name) {

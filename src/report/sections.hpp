@@ -16,7 +16,7 @@ namespace incise {
 [[nodiscard]] std::string answer_section(const ReportData& data);
 /// The verdict's reasons and the notices, worst first.
 [[nodiscard]] std::string findings_section(const ReportData& data);
-/// Nothing where there is no caveat.
+/// Empty without caveats.
 [[nodiscard]] std::string caveats_section(const ReportData& data);
 [[nodiscard]] std::string scan_section(const ReportData& data, const std::array<SlicePlane, 3>& planes);
 /// @param mesh_is_shown  false when the mesh is absent or too large for the page.
@@ -25,7 +25,7 @@ namespace incise {
 [[nodiscard]] std::string error_section(const ReportData& data);
 [[nodiscard]] std::string kerf_section(const ReportData& data);
 [[nodiscard]] std::string program_section(const ReportData& data);
-/// Nothing where there is nothing to show.
+/// Empty without pictures.
 [[nodiscard]] std::string tissue_section(const ReportData& data);
 [[nodiscard]] std::string record_section(const ReportData& data);
 [[nodiscard]] std::string page_footer();

@@ -65,8 +65,7 @@ double sampled(const Volume<Value>& volume, const Vec3& index, double outside) {
   return value;
 }
 
-/// Which way a slice is laid out: world axes that run right, down and through it, and whether they run in the positive
-/// sense.
+/// The layout of a slice: world axes that run right, down and through it, and whether they run in the positive sense.
 struct Layout {
   const char* name;
   int right, down, normal;
@@ -197,7 +196,7 @@ std::optional<Vec3> middle_of_interest(const CtPicture& picture) {
   return box.isEmpty() ? std::nullopt : std::optional<Vec3>(box.center());
 }
 
-/// Of evenly spaced slices the indices, or of one slice that through `place`.
+/// Returns the indices of evenly spaced slices; for one slice, of the slice through `place`.
 std::vector<int> slices_to_show(const Slicer& slicer, int wanted, const std::optional<Vec3>& place) {
   if (wanted == 1 && place) return {slicer.nearest_to(*place)};
   std::vector<int> indices;

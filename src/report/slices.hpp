@@ -10,7 +10,7 @@ namespace incise {
 
 /// One slice of the scan as a picture: x to the right and y downwards, in mm from its top left corner.
 struct Slice {
-  double position_mm = 0.0;  ///< of the slice along its normal's world axis
+  double position_mm = 0.0;  ///< along the world axis of the slice's normal
   std::string image_uri;     ///< PNG
   std::string outline;       ///< SVG path data, mm, of the border of the tissue; may be empty
   std::string tumor;         ///< the same of the tumour in this plane
@@ -20,16 +20,17 @@ struct Slice {
 /// Slices along one direction of the scan, shown the way radiologists do.
 struct SlicePlane {
   std::string name;       ///< axial, coronal, sagittal
-  std::string axis_name;  ///< x, y or z: what `position_mm` counts along
+  std::string axis_name;  ///< world axis of `position_mm`: x, y or z
   double width_mm = 0.0, height_mm = 0.0;
   std::array<std::string, 4> ends;  ///< names of left, right, top, bottom
   std::vector<Slice> slices;        ///< ascending position
   std::size_t shown_first =
-      0;  ///< the one through the middle of the planned cut, or of the tumour; without both the middle one
+      0;  ///< index of the slice nearest to the middle of the planned cut, else of the tumour; else the middle slice
 };
 
-/// Axial (at most `max_axial` evenly spaced slices), coronal and sagittal (the one through the tumour's centre; without
-/// a tumour the middle one). Planes follow the volume's own axes, named after the world axis they are nearest to.
+/// Returns axial slices (at most `max_axial`, evenly spaced), and one coronal and one sagittal slice (through the
+/// middle of the planned cut, else of the tumour, else of the volume). Planes follow the volume's own axes and are
+/// named after the nearest world axes.
 [[nodiscard]] std::array<SlicePlane, 3> slice_planes(const CtPicture& picture,
                                                      const std::array<std::string, 6>& axis_names, int max_axial);
 

@@ -163,7 +163,7 @@ class Canvas {
   std::vector<DrawnStroke> strokes_;
 };
 
-/// How a frame lies in its picture.
+/// The map from a frame to its picture.
 struct Projection {
   Mat3 view;
   Vec3 center = Vec3::Zero();  ///< of what is shown, in the view

@@ -12,10 +12,10 @@ namespace incise {
 /// A number as a person writes it: four significant digits, whole numbers in full, a true minus sign.
 [[nodiscard]] std::string number_text(double value);
 
-/// A number with so many decimals and a true minus sign; never "−0".
+/// A number with the given count of decimals and a true minus sign; never "−0".
 [[nodiscard]] std::string fixed_text(double value, int decimals);
 
-/// A PNG file as an address that a page or an SVG holds within itself.
+/// A PNG file as a data URI, for use within a page or an SVG.
 [[nodiscard]] std::string png_data_uri(std::string_view png);
 
 /// #rrggbb of components in [0, 1].

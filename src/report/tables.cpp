@@ -12,7 +12,7 @@
 namespace incise {
 namespace {
 
-/// Grows one HTML table. Cells are escaped here. A long one can be folded, and a phone begins with it folded.
+/// Builds one HTML table. Cells are escaped here. A long table can be folded, and a phone shows it folded at first.
 class TableWriter {
  public:
   /// @param kind  class of the table; empty: on a phone each of its rows becomes a block.
@@ -69,7 +69,7 @@ bool reads_as_number(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// "ok", "refused", and how the cut ended where that was no success.
+/// "ok", "refused", followed by the outcome of the cut if it was no success.
 std::string judgement_of(const ReportIncision& incision) {
   const VerdictStatus status = incision.verdict.status();
   std::string words(to_string(status));
@@ -82,7 +82,7 @@ std::string judgement_of(const ReportIncision& incision) {
   return fmt::format("<span class=\"{}\">{}</span>", kTones[static_cast<std::size_t>(status)], words);
 }
 
-/// As a reader writes it.
+/// The relation as a reader would write it.
 std::string sign_of(const std::string& relation) {
   if (relation == ">=") return "≥ ";
   return relation == "<=" ? "≤ " : relation + " ";

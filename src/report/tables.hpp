@@ -7,10 +7,10 @@
 
 namespace incise {
 
-/// With a capital as its first letter, where that is one of ASCII.
+/// Returns `text` with a capital first letter, if that letter is ASCII.
 [[nodiscard]] std::string with_capital(std::string text);
 
-/// The verdict and the three numbers of each incision, side by side; what is not known is said in words.
+/// Returns the verdict and the three numbers of each incision, side by side; unknown values are stated in words.
 [[nodiscard]] std::string answer_table(std::span<const ReportIncision> incisions);
 
 /// HTML tables; each is empty text when there are no rows.
@@ -20,7 +20,7 @@ namespace incise {
 /// Name, value and unit; without a header.
 [[nodiscard]] std::string value_table(std::span<const ReportValue> values);
 [[nodiscard]] std::string file_table(std::span<const ReportFile> files);
-/// With its title as a heading; right-aligned where a cell reads as a number.
+/// With its title as a heading; cells that are numbers are right-aligned.
 [[nodiscard]] std::string free_table(const ReportTable& table);
 
 }  // namespace incise

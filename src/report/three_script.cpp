@@ -9,13 +9,13 @@
 namespace incise {
 namespace {
 
-/// A module's code and the names that it gives away.
+/// The code of a module and its exports.
 struct Code {
   std::string_view code;
   std::string exports;  ///< as the properties of an object
 };
 
-/// What stands between `open` and the next `close`; `after` is where that ends.
+/// Returns the text between `open` and the next `close`; sets `after` to the end of `close`.
 std::string_view between(std::string_view text, std::string_view open, std::string_view close, std::size_t& after) {
   const std::size_t from = text.find(open);
   const std::size_t to = from == std::string_view::npos ? from : text.find(close, from);
@@ -59,7 +59,7 @@ std::string three_script(std::string_view core, std::string_view module) {
   std::size_t after = 0;
   const std::string imports = properties(between(module, "import{", kFromCore, after), false);
   module.remove_prefix(after);
-  static_cast<void>(between(module, "export{", kFromCore, after));  // all of the core is given away below
+  static_cast<void>(between(module, "export{", kFromCore, after));  // the whole core is exported below
   module.remove_prefix(after);
   const Code inner = code_of(core);
   const Code outer = code_of(module);

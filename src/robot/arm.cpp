@@ -82,7 +82,7 @@ Mat6 jacobian(const ArmModel& arm, const Joints& q, const Vec3& point_in_flange_
 double smallest_singular_value(const ArmModel& arm, const Joints& q) {
   Mat6 scaled = jacobian(arm, q);
   scaled.topRows<3>() /= kArmLengthScaleMm;
-  // By the eigenvalues of J J^T: exact to 1e-8 of the largest, which is enough for a distance, and ten times as fast.
+  // From the eigenvalues of J J^T: accurate to 1e-8 of the largest, which is enough here, and ten times as fast.
   const Eigen::SelfAdjointEigenSolver<Mat6> solver(scaled * scaled.transpose(), Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues()[0]));
 }
@@ -92,7 +92,7 @@ double table_clearance_mm(const ArmModel& arm, const Joints& q, double table_z_m
   const auto origin = [&](std::size_t i) { return Vec3(frames[i].topRightCorner<3, 1>()); };
   const Vec3 side = frames[1].block<3, 1>(0, 2);  // axis of the shoulder, elbow and first wrist joint
   const Vec3 shoulder = arm.shoulder_offset_mm * side, elbow = arm.elbow_offset_mm * side;
-  // The links as round rods from joint to joint. The shoulder's end of the upper arm is fixed above the table.
+  // The links are round rods from joint to joint. The shoulder end of the upper arm has a fixed height and is ignored.
   const std::array<std::array<Vec3, 2>, 5> rods{{{origin(1) + shoulder, origin(2) + shoulder},
                                                  {origin(2) + elbow, origin(3) + elbow},
                                                  {origin(3) + elbow, origin(4)},

@@ -13,10 +13,10 @@ namespace {
 constexpr double kTieOfMerit = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The joints of one branch along the poses.
+/// The joints along the poses on one branch.
 struct Candidate {
   std::vector<Joints> q;
-  std::size_t failed_pose = 0;  ///< the number of poses where all can be reached
+  std::size_t failed_pose = 0;  ///< the number of poses if all can be reached
   InverseOutcome why = InverseOutcome::Solved;
 };
 
@@ -53,7 +53,7 @@ std::array<Candidate, 8> follow_all(const RobotProgram& program, const ArmSetup&
   return candidates;
 }
 
-/// Shifts each joint by whole turns: into its limits if that can be, and near to the reference.
+/// Shifts each joint by whole turns: into its limits if possible, and near to `setup.near_rad`.
 void take_nearest_turns(std::vector<Joints>& q, const ArmSetup& setup) {
   for (int j = 0; j < 6; ++j) {
     double low = kInfinity, high = -kInfinity;
@@ -75,7 +75,7 @@ void take_nearest_turns(std::vector<Joints>& q, const ArmSetup& setup) {
   }
 }
 
-/// Ends early with some value below `floor`, where that is already certain.
+/// Merit of a candidate (see choose_branch). Once it is below `floor`, returns any value below `floor`.
 double merit_of(const std::vector<Joints>& q, const ArmSetup& setup, const BranchPreferences& preferences,
                 double floor) {
   const std::size_t stride = std::max<std::size_t>(1, q.size() / static_cast<std::size_t>(preferences.places));

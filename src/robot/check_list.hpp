@@ -6,7 +6,7 @@
 
 namespace incise::robot_detail {
 
-/// The largest value over some poses and where it is.
+/// The greatest value over some poses, and its pose.
 struct Worst {
   double value = -std::numeric_limits<double>::infinity();
   std::optional<std::size_t> pose;
@@ -18,28 +18,28 @@ struct Worst {
   }
 };
 
-/// Collects checks of one program.
+/// Collects the checks of one program.
 class CheckList {
  public:
   CheckList(const RobotProgram& program, ProgramChecks& result) : program_(program), result_(result) {}
 
-  /// `value` has to be at most `limit`.
+  /// Adds a check that requires value <= limit.
   void at_most(const char* name, double value, double limit, const char* unit, std::optional<std::size_t> pose,
                std::string text) {
     add({name, value <= limit, value, limit, "<=", unit, pose, std::move(text)});
   }
-  /// `value` has to be at least `limit`.
+  /// Adds a check that requires value >= limit.
   void at_least(const char* name, double value, double limit, const char* unit, std::optional<std::size_t> pose,
                 std::string text) {
     add({name, value >= limit, value, limit, ">=", unit, pose, std::move(text)});
   }
-  /// `value` has to lie between the two limits, at neither of them; the nearer one is named.
+  /// Adds a check that requires low < value < high; it states the nearer limit.
   void inside(const char* name, double value, double low, double high, std::string text) {
     const bool is_low = value - low < high - value;
     add({name, value > low && value < high, value, is_low ? low : high, is_low ? ">" : "<", "", std::nullopt,
          std::move(text)});
   }
-  /// A yes or no. `pose`: where it fails.
+  /// Adds a yes or no. @param pose  where it fails.
   void holds(const char* name, bool passed, std::string text, std::optional<std::size_t> pose = std::nullopt) {
     add({name, passed, passed ? 1.0 : 0.0, 1.0, "", "", pose, std::move(text)});
   }
@@ -56,13 +56,13 @@ class CheckList {
   ProgramChecks& result_;
 };
 
-/// reach, joint_limits, joint_speed, joint_acceleration, singularity, tip_speed, table
+/// Adds the checks reach, joint_limits, joint_speed, joint_acceleration, singularity, tip_speed and table.
 void check_motion(CheckList& list, const CheckSettings& settings);
 
-/// depth in a surface
+/// Adds the check depth, measured below a surface (robot frame).
 void check_depth_in(CheckList& list, const TriMesh& surface, double depth_mm, double tolerance_mm);
 
-/// self_collision, base and, with a surface, surface_collision, shaft, needle
+/// Adds the checks self_collision, base and, if there is a surface, surface_collision, shaft and needle.
 void check_collisions(CheckList& list, const TriMesh* surface, const CheckSettings& settings);
 
 }  // namespace incise::robot_detail

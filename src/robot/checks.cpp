@@ -19,7 +19,7 @@ using robot_detail::CheckList;
 using robot_detail::Worst;
 
 constexpr double kClosedToMm = 0.01;
-constexpr double kLeastAreaMm2 = 0.01;  // of a tumour edge: less is a line or a place
+constexpr double kLeastAreaMm2 = 0.01;  // of a tumour edge: with less it is a line or a point
 constexpr std::array<const char*, 33> kNames{"finite",
                                              "frame",
                                              "closed",
@@ -55,7 +55,7 @@ constexpr std::array<const char*, 33> kNames{"finite",
                                              "registration_converged"};
 constexpr std::array<const char*, 4> kFixed{"finite", "frame", "reach", "margin"};
 
-/// Poses that cut, the plunge's end (where the cut begins) included, the overlap not.
+/// Poses of the cut, with the end of the plunge, where the cut begins, but without the overlap.
 std::vector<std::size_t> cut_poses(const RobotProgram& program) {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < program.poses.size(); ++i) {
@@ -65,7 +65,7 @@ std::vector<std::size_t> cut_poses(const RobotProgram& program) {
   return result;
 }
 
-/// Where the needle enters the tissue at these poses.
+/// The needle's entry points at these poses.
 Contour entries_of(const RobotProgram& program, const std::vector<std::size_t>& cut) {
   Contour entries{{}, program.is_closed};
   for (const std::size_t i : cut) entries.points.push_back(program.poses[i].entry_mm());
@@ -91,12 +91,12 @@ bool check_finite(CheckList& list) {
   return !bad;
 }
 
-/// A place on the course that is looked at: every pose of the cut and every waypoint.
+/// A place on the course that is checked: a pose of the cut or a waypoint.
 struct CoursePlace {
   Vec3 entry_mm;
   Vec3 tip_mm;
   double depth_mm;
-  std::size_t pose;  ///< that is named for it
+  std::size_t pose;  ///< the pose that a failed check names
 };
 
 std::vector<CoursePlace> places_of(const RobotProgram& program, const ToolPath& path,
@@ -121,7 +121,7 @@ Vec3 mean_axis(const ToolPath& path) {
   return sum;
 }
 
-/// Laid into the plane across `axis` through the origin: what is seen along it.
+/// Projects a point along `axis` (unit) into the plane through the origin.
 Vec3 seen_along(const Vec3& axis, const Vec3& point) {
   return point - axis.dot(point) * axis;
 }
@@ -130,7 +130,7 @@ Contour seen_along(const Vec3& axis, Contour contour) {
   return contour;
 }
 
-/// How many points stand for a contour, the sides between its own included.
+/// Number of points that represent a contour, its sides included.
 std::size_t places_along(const Contour& contour) {
   constexpr double kStepMm = 0.2;
   constexpr double kMost = 5000.0;
@@ -141,7 +141,7 @@ std::string place_text(const Vec3& p) {
   return fmt::format("{:.2f}, {:.2f}, {:.2f} mm", p.x(), p.y(), p.z());
 }
 
-/// What concerns the course alone, without the arm.
+/// Makes the checks of the course, which need no arm.
 class CourseChecker {
  public:
   CourseChecker(CheckList& list, const ToolPath& path, const CheckSettings& settings)
@@ -163,7 +163,7 @@ class CourseChecker {
     }
   }
 
-  /// The course joins neighbouring waypoints whatever lies between them.
+  /// A lost waypoint would go unnoticed otherwise: the course joins any two neighbouring waypoints.
   void gap() {
     const WaypointGap widest = widest_gap(path_, settings_);
     const auto pose = std::find_if(cut_.begin(), cut_.end(),
@@ -257,7 +257,7 @@ class CourseChecker {
     };
     for (const CoursePlace& p : places_) {
       see(nearest_on(path_.tumor_edge, p.entry_mm).distance_mm, p.entry_mm, p.pose);
-      // What lies beneath the edge is not known: the tip keeps away from all of it.
+      // The tumour beneath the edge is not known, so the tip must stay outside the whole edge as seen from above.
       see(nearest_on(seen_edge, seen_along(axis_, p.tip_mm)).distance_mm, p.tip_mm, p.pose);
     }
     list_.at_least("margin", -closest.value, settings_.close_margin_mm, "mm", closest.pose,
@@ -304,8 +304,7 @@ class CourseChecker {
                   "greatest distance of the course from the intended one, and of that from the course");
   }
 
-  /// The robot stands on the table, and the tissue lies on it or is held above it: a tool that comes from below is a
-  /// mistaken frame.
+  /// Robot and tissue are on or above the table, so a tool that comes from below indicates a wrong frame.
   void tilt() {
     Worst steepest;
     for (std::size_t i = 0; i < program_.poses.size(); ++i) {
@@ -342,7 +341,7 @@ class CourseChecker {
     }
     Worst farthest;
     for (const CoursePlace& p : places_) farthest.see(nearest_on(path_.tumor_edge, p.entry_mm).distance_mm, p.pose);
-    // A part of the edge that is left out shows only from the edge's side.
+    // A part of the edge that the mark omits shows only in the distances from the edge.
     Points edge = path_.tumor_edge.points;
     if (length_mm(path_.tumor_edge) > 0.0) {
       const Points between = resample(path_.tumor_edge, places_along(path_.tumor_edge)).points;
@@ -356,17 +355,17 @@ class CourseChecker {
                   "greatest distance of the mark from the tumour edge, and of that from the mark");
   }
 
-  /// Of `point` above the nearest place of the ring, against the mean axis; mm, negative: below.
+  /// Height of `point` above the nearest place of the ring, against the mean axis, mm; negative below it.
   [[nodiscard]] double height_above(const Contour& ring, const Vec3& point) const {
     return axis_.dot(nearest_on(ring, point).position_mm - point);
   }
 
-  /// Of a place on the ring through the poses of the cut.
+  /// The pose next to a place on the contour of the entry points.
   [[nodiscard]] std::size_t pose_next_to(const ContourPoint& place) const {
     return cut_[(place.segment + (place.fraction > 0.5 ? 1 : 0)) % cut_.size()];
   }
 
-  /// A pose before the first crossing, found by taking points away from the end until no crossing is left.
+  /// The pose at which the course first crosses itself, found by bisection over the number of points.
   [[nodiscard]] std::optional<std::size_t> first_crossing(const Contour& course) const {
     if (!crosses_itself_in_view(course, axis_)) return std::nullopt;
     std::size_t low = 3, high = course.points.size();  // the first `low` points, joined openly, do not cross

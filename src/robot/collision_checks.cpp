@@ -13,8 +13,8 @@
 namespace incise::robot_detail {
 namespace {
 
-constexpr double kCloselyMm = 0.05;  // what may be the least distance is known to this
-constexpr double kRoughShare = 0.1;  // for the rest a tenth will do
+constexpr double kCloselyMm = 0.05;  // accuracy of a distance that may be the least
+constexpr double kRoughShare = 0.1;  // accuracy of the others, as a share of the distance
 
 const Capsule& of(const Hulls& hulls, Hull hull) {
   return hulls[static_cast<std::size_t>(hull)];
@@ -31,7 +31,7 @@ std::vector<Hulls> hulls_of(const RobotProgram& program, const CheckSettings& se
   return all;
 }
 
-/// How far a hull can move in half a step to either neighbour.
+/// Greatest distance that a hull can move in half a step to either neighbouring sample, mm.
 double half_step_mm(const std::vector<Hulls>& hulls, std::size_t i, Hull hull) {
   double farthest = 0.0;
   if (i > 0) farthest = motion_mm(of(hulls[i - 1], hull), of(hulls[i], hull));
@@ -39,7 +39,7 @@ double half_step_mm(const std::vector<Hulls>& hulls, std::size_t i, Hull hull) {
   return 0.5 * farthest;
 }
 
-/// Least distance of some pairs over the whole motion.
+/// Checks the least distance of some pairs over the whole motion.
 void check_pairs(CheckList& list, const char* name, std::span<const HullPair> pairs, const std::vector<Hulls>& hulls,
                  double limit_mm, const char* whose) {
   Worst nearest;
@@ -56,18 +56,19 @@ void check_pairs(CheckList& list, const char* name, std::span<const HullPair> pa
                 fmt::format("least distance of {}: {} and {}", whose, to_string(worst.a), to_string(worst.b)));
 }
 
-/// The least distance from the surface that was seen, and whose it is.
+/// The hull nearest to the surface so far.
 struct NearestHull {
   Worst worst;  ///< of the negative distance
   Hull hull = Hull::Base;
 };
 
-/// Holds hulls against the surface, sample by sample, and passes over those that cannot be nearer than what was seen.
+/// Finds the least distance of hulls from the surface, sample by sample. Skips hulls that cannot be nearer than the
+/// nearest one so far.
 class SurfaceWatch {
  public:
   explicit SurfaceWatch(const SurfaceProbe& probe) : distance_([&probe](const Vec3& p) { return probe.distance_mm(p); }) { forget(); }
 
-  /// @param step_mm  how far it can move until the next sample is nearer
+  /// Considers one hull at one sample. @param step_mm  distance that it can move in half a step (half_step_mm)
   void see(Hull hull, const Capsule& capsule, double step_mm, std::size_t pose) {
     double& least_mm = least_mm_[static_cast<std::size_t>(hull)];
     least_mm -= 2.0 * step_mm;
@@ -87,18 +88,18 @@ class SurfaceWatch {
     nearest_.worst.see(-found_mm, pose);
     nearest_.hull = hull;
   }
-  /// The hulls are no longer those of the samples before.
+  /// Forgets the bounds of earlier samples; call this when a hull is replaced by another.
   void forget() { least_mm_.fill(-std::numeric_limits<double>::infinity()); }
   [[nodiscard]] const NearestHull& nearest() const { return nearest_; }
 
  private:
   PointDistance distance_;
   NearestHull nearest_;
-  std::array<double, kHullCount> least_mm_{};  ///< what each hull's distance is at least by now
+  std::array<double, kHullCount> least_mm_{};  ///< lower bound of each hull's distance now
 };
 
-/// The part of the needle that has no business in the tissue: all of it in the air, else what lies higher than the
-/// clearance above the entry.
+/// The part of the needle that must stay clear of the tissue: in the air all of it, in the tissue the part higher than
+/// the clearance above the entry.
 Capsule needle_in_air(const RobotProgram& program, std::size_t pose, const Capsule& needle) {
   const std::size_t next = std::min(pose + 1, program.poses.size() - 1);
   const double depth_mm = std::max(program.poses[pose].depth_mm, program.poses[next].depth_mm);
@@ -122,7 +123,7 @@ void check_surface(CheckList& list, const TriMesh& surface, const std::vector<Hu
     const std::size_t pose = program.motion.samples[i].pose;
     for (const Hull hull : kLinks) links.see(hull, of(hulls[i], hull), half_step_mm(hulls, i, hull), pose);
     if (has_shaft) shaft.see(Hull::Shaft, of(hulls[i], Hull::Shaft), half_step_mm(hulls, i, Hull::Shaft), pose);
-    if (i > 0 && pose != program.motion.samples[i - 1].pose) needle.forget();  // another part of it
+    if (i > 0 && pose != program.motion.samples[i - 1].pose) needle.forget();  // another part of the needle
     needle.see(Hull::Needle, needle_in_air(program, pose, of(hulls[i], Hull::Needle)),
                half_step_mm(hulls, i, Hull::Needle), pose);
   }

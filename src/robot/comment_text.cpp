@@ -11,7 +11,8 @@ struct Range {
   std::uint32_t first, last;
 };
 
-/// What may end a line, turn the direction of reading, or is not seen [Unicode: Cc, Cf, Zl, Zp, noncharacters].
+/// Characters that may end a line, change the reading direction, or are invisible [Unicode: Cc, Cf, Zl, Zp,
+/// noncharacters].
 constexpr std::array<Range, 17> kNotPlain{{{0x00, 0x1F},
                                            {0x7F, 0x9F},
                                            {0xAD, 0xAD},
@@ -35,7 +36,7 @@ bool is_plain(std::uint32_t code) {
                       [code](const Range& range) { return code >= range.first && code <= range.last; });
 }
 
-/// Bytes of the UTF-8 character at the beginning of a text and its code; 0 bytes: there is none.
+/// Length, in bytes, and code of the UTF-8 character at the beginning of a text; 0 bytes if there is none.
 struct Utf8Character {
   std::size_t bytes = 0;
   std::uint32_t code = 0;

@@ -41,7 +41,7 @@ ToolFrame::ToolFrame(const ToolPath& path, const Vec3& hint, double spin_rad) {
 }
 
 Mat3 ToolFrame::at(const Vec3& axis) const {
-  // The shortest turn from the mean axis: I + [v] + [v]² / (1 + c) with v the cross, c the scalar product.
+  // The shortest rotation from the mean axis: I + [v] + [v]² / (1 + c), with v the cross and c the scalar product.
   const Vec3 v = mean_.cross(axis);
   Mat3 cross;
   cross << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;

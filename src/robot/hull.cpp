@@ -52,7 +52,7 @@ Hulls hulls_at(const ArmModel& arm, const Joints& q, const Instrument& instrumen
 namespace robot_detail {
 namespace {
 
-// The upper arm swings beside the base and the forearm beside wrist 2, by the build of the arm.
+// Without the pairs upper arm and base, forearm and wrist 2: the arm's build keeps them apart sideways.
 constexpr HullPair kBasePairs[]{
     {Hull::Base, Hull::Elbow},      {Hull::Base, Hull::Forearm},     {Hull::Base, Hull::Wrist1},
     {Hull::Base, Hull::Wrist2},     {Hull::Base, Hull::Wrist3},      {Hull::Base, Hull::Shaft},
@@ -67,7 +67,7 @@ constexpr HullPair kSelfPairs[]{
     {Hull::Wrist1, Hull::Shaft},    {Hull::Wrist1, Hull::Needle},   {Hull::Wrist2, Hull::Shaft},
     {Hull::Wrist2, Hull::Needle}};
 
-/// Squared distance of two segments: the nearest places of the two lines, each drawn back onto its segment.
+/// Squared distance of two segments: the nearest points of the two lines, each clamped to its segment.
 double segments_squared_mm2(const Capsule& a, const Capsule& b) {
   constexpr double kPointMm2 = 1e-12;  // shorter is a point
   const Vec3 u = a.to_mm - a.from_mm, v = b.to_mm - b.from_mm, between = a.from_mm - b.from_mm;
@@ -120,8 +120,8 @@ double arm_clearance_mm(const Hulls& hulls) {
 
 DistanceRange segment_distance(const PointDistance& distance, const Vec3& from, const Vec3& to, double tolerance_mm,
                                double share) {
-  // Distance changes by no more than the way: a piece of the segment is nowhere nearer than its middle less its half
-  // length. The most promising piece is halved until none can be much nearer than the nearest place found.
+  // The distance changes by at most the distance moved, so no point of a piece is nearer than its middle minus half its
+  // length. The piece with the least bound is halved until none can be much nearer than the nearest point found.
   struct Piece {
     double least_mm, begin, end;
     bool operator<(const Piece& other) const { return least_mm > other.least_mm; }  // the heap's top is the least

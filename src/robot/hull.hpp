@@ -9,31 +9,31 @@
 
 namespace incise::robot_detail {
 
-/// Least distance between the hulls' skins, mm; negative where they overlap.
+/// Returns the least distance between the surfaces of two capsules, mm; negative if they overlap.
 [[nodiscard]] double distance_mm(const Capsule& a, const Capsule& b);
 
-/// No point of the capsule moves farther than this between two places of it, mm.
+/// Returns an upper bound of the distance that a point of a capsule moves between two positions of it, mm.
 [[nodiscard]] double motion_mm(const Capsule& before, const Capsule& after);
 
 struct HullPair {
   Hull a, b;
 };
-/// Pairs that the joints can bring together: not those that a joint connects or whose distance no joint changes, and
-/// not those that the arm's build holds apart sideways.
+/// Pairs of hulls that can collide. Left out are pairs that a joint connects, pairs whose distance no joint changes,
+/// and pairs that the arm's build keeps apart sideways.
 [[nodiscard]] std::span<const HullPair> base_pairs();  ///< with the base or the shoulder
-[[nodiscard]] std::span<const HullPair> self_pairs();  ///< of the others
+[[nodiscard]] std::span<const HullPair> self_pairs();  ///< without base and shoulder
 
-/// Least clearance of all pairs, mm.
+/// Returns the least distance of all these pairs, mm.
 [[nodiscard]] double arm_clearance_mm(const Hulls& hulls);
 
-/// Distance of a point from something fixed, mm.
+/// Distance of a point from a fixed object, mm.
 using PointDistance = std::function<double(const Vec3&)>;
-/// What is known of a segment's distance from it, mm.
+/// Range in which the distance of a segment from the object lies, mm.
 struct DistanceRange {
-  double least_mm = 0.0;    ///< the distance is not below this …
-  double nearest_mm = 0.0;  ///< … and not above this, which some place of the segment has
+  double least_mm = 0.0;    ///< lower bound
+  double nearest_mm = 0.0;  ///< upper bound: the distance of some point of the segment
 };
-/// The range is no wider than `tolerance_mm` and this share of the distance together.
+/// Computes the distance of a segment from an object, to `tolerance_mm` plus `share` of the distance.
 [[nodiscard]] DistanceRange segment_distance(const PointDistance& distance, const Vec3& from, const Vec3& to,
                                              double tolerance_mm, double share);
 

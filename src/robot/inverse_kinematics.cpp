@@ -9,20 +9,20 @@
 namespace incise {
 namespace {
 
-constexpr double kWristSingularSine = 1e-10;  // below it rounding, not the pose, decides joints 4 and 6
+constexpr double kWristSingularSine = 1e-10;  // below it, rounding determines joints 4 and 6
 
 double wrapped(double angle) {
   const double turned = std::remainder(angle, 2.0 * units::kPi);
   return turned <= -units::kPi ? units::kPi : turned;
 }
 
-/// Where the three parallel joints 2, 3 and 4 have to bring the wrist, in the plane of the arm.
+/// Target of the three parallel joints 2, 3 and 4, in the plane of the arm.
 struct PlanarTarget {
-  double x_mm = 0.0, y_mm = 0.0;  ///< of the first wrist joint from the shoulder, across joint 2's axis
+  double x_mm = 0.0, y_mm = 0.0;  ///< first wrist joint, from the shoulder, perpendicular to joint 2's axis
   double angle_rad = 0.0;         ///< q2 + q3 + q4
 };
 
-/// What is left for joints 2, 3 and 4 when the others are known.
+/// Computes the target of joints 2, 3 and 4 from the other joints.
 PlanarTarget planar_target(const ArmModel& arm, const Mat4& T, double q1, double q5, double q6) {
   const double s1 = std::sin(q1), c1 = std::cos(q1), s5 = std::sin(q5), c5 = std::cos(q5);
   const double s6 = std::sin(q6), c6 = std::cos(q6);
@@ -36,12 +36,12 @@ PlanarTarget planar_target(const ArmModel& arm, const Mat4& T, double q1, double
   return {in_plane.dot(origin4), origin4.z() - arm.d_mm[0], std::atan2(x4.z(), in_plane.dot(x4))};
 }
 
-/// Joints 2, 3 and 4 for one bend of the elbow; false where the arm is too short or too long for it.
+/// Computes joints 2, 3 and 4 for one sign of the elbow; false if the target is too far or too near.
 bool solve_planar(const ArmModel& arm, const PlanarTarget& target, bool is_elbow_negative, Joints& q) {
   const double a2 = arm.a_mm[1], a3 = arm.a_mm[2];
   const double r2 = target.x_mm * target.x_mm + target.y_mm * target.y_mm;
   const double c3 = (r2 - a2 * a2 - a3 * a3) / (2.0 * a2 * a3);
-  constexpr double kRounding = 1e-12;  // a stretched arm may come out a few last bits too long
+  constexpr double kRounding = 1e-12;  // by rounding, a stretched arm may be a few last bits too long
   if (std::abs(c3) > 1.0 + kRounding) return false;
   const double elbow = std::acos(std::clamp(c3, -1.0, 1.0));
   q[2] = is_elbow_negative ? -elbow : elbow;
@@ -56,7 +56,7 @@ InverseResult inverse_kinematics(const ArmModel& arm, const Mat4& T, double wris
   INCISE_REQUIRE(T.allFinite(), "expected a finite pose");
   InverseResult result;
   const Mat3 R = T.topLeftCorner<3, 3>();
-  // The crossing of the wrist's last two axes: joint 1 has to bring the arm's plane to d4 beside it.
+  // Intersection of the wrist's last two axes: joint 1 must turn the arm's plane to distance d4 from it.
   const Vec3 wrist = Vec3(T.topRightCorner<3, 1>()) - arm.d_mm[5] * R.col(2);
   const double away = std::hypot(wrist.x(), wrist.y());
   if (away < arm.d_mm[3]) {
@@ -69,10 +69,10 @@ InverseResult inverse_kinematics(const ArmModel& arm, const Mat4& T, double wris
     Joints q;
     const double side = std::acos(std::min(1.0, arm.d_mm[3] / away));
     q[0] = std::atan2(wrist.y(), wrist.x()) + units::kPi / 2.0 + (branch.is_shoulder_right ? -side : side);
-    // The flange's axes along the arm's sideways direction z1 = (s1, -c1, 0): n, o and a of them.
+    // Components n, o, a of the flange's axes along the arm's sideways direction z1 = (s1, -c1, 0).
     const Vec3 z1(std::sin(q[0]), -std::cos(q[0]), 0.0);
     const double n = z1.dot(R.col(0)), o = z1.dot(R.col(1)), a = z1.dot(R.col(2));
-    const double sine = std::hypot(n, o);  // exact where the cosine says little
+    const double sine = std::hypot(n, o);  // accurate where the cosine is not
     q[4] = branch.is_wrist_flipped ? -std::atan2(sine, a) : std::atan2(sine, a);
     if (sine < kWristSingularSine) {
       is_wrist_singular = true;
@@ -85,7 +85,7 @@ InverseResult inverse_kinematics(const ArmModel& arm, const Mat4& T, double wris
     for (int i = 0; i < 6; ++i) q[i] = wrapped(q[i]);
     result.solutions.push_back({q, branch});
   }
-  // Too near for all is not possible: plain and flipped wrist lie farther apart than the folded arm's gap is wide.
+  // Not all branches can be too near: plain and flipped wrist lie farther apart than the folded arm's gap is wide.
   if (result.solutions.empty())
     result.outcome = InverseOutcome::TooFar;
   else if (is_wrist_singular)

@@ -13,16 +13,16 @@ namespace incise {
 namespace robot_detail {
 namespace {
 
-constexpr double kDifferenceS = 1e-3;  // rounding of the inverse, 1e-15 rad, over its square is 1e-9 rad/s²
-constexpr double kJumpRad = 0.2;       // in one period: 25 rad/s at 8 ms, ten times what any joint can do
+constexpr double kDifferenceS = 1e-3;  // 1e-15 rad of rounding causes 1e-9 rad/s² in the second difference
+constexpr double kJumpRad = 0.2;       // in one period: 25 rad/s at 8 ms, ten times the speed of any joint
 
-/// The joints at any time of a course on one branch.
+/// Computes the joints at any time of a course, on one branch.
 class BranchFollower {
  public:
   BranchFollower(const Course& course, const ToolFrame& frame, const ArmBranch& branch, const ArmSetup& setup)
       : course_(course), frame_(frame), branch_(branch), setup_(setup), T_tool_flange_(setup.T_flange_tool.inverse()) {}
 
-  /// Nothing where the branch does not reach; `outcome` then says why.
+  /// Nothing if the branch does not reach the pose; `outcome` then gives the reason.
   std::optional<Joints> at(double time_s, const Joints& reference, InverseOutcome& outcome) const {
     const CourseSample place = course_.at(time_s);
     Mat4 T = Mat4::Identity();

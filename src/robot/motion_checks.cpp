@@ -12,7 +12,7 @@
 namespace incise::robot_detail {
 namespace {
 
-/// Time in which the tip speeds up to the fastest part of the cut, and a little more.
+/// Time that the tip needs to reach the greatest speed of the cut, and a little more.
 double ramp_s(const RobotProgram& program) {
   constexpr double kMoreS = 0.02;
   double speed = 0.0;
@@ -23,7 +23,7 @@ double ramp_s(const RobotProgram& program) {
   return kMoreS + (speed > a * a / j ? speed / a + a / j : 2.0 * std::sqrt(speed / j));
 }
 
-/// When the cut begins or ends, or its nominal speed changes.
+/// Times at which the cut begins or ends, or its nominal speed changes.
 std::vector<double> changes_s(const RobotProgram& program) {
   std::vector<double> times;
   for (std::size_t i = 1; i < program.poses.size(); ++i) {

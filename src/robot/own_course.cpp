@@ -16,9 +16,9 @@ namespace incise::robot_detail {
 namespace {
 
 constexpr double kSpacingMm = 0.05;    // chords deviate by 2e-5 mm at 15 mm radius
-constexpr double kRoundingMm_s = 0.2;  // of speeds: a table of six decimals and cycles of 2 ms
+constexpr double kRoundingMm_s = 0.2;  // of speeds, from a table of six decimals in cycles of 2 ms
 
-/// One place of the course, and what holds on the way from it to the next.
+/// One place of the course, with the speed from it to the next.
 struct CoursePlace {
   Vec3 tip_mm, axis;
   double arc_mm = 0.0;  ///< from the program's first pose
@@ -56,7 +56,7 @@ class OwnCourse {
   [[nodiscard]] const std::vector<CoursePlace>& places() const { return places_; }
   [[nodiscard]] double length_mm() const { return places_.back().arc_mm; }
   [[nodiscard]] bool is_in_tissue(double arc_mm) const { return arc_mm > surface_in_mm_ && arc_mm < surface_out_mm_; }
-  /// On the curve, so far from its ends and from other speeds that the tip has its full speed.
+  /// Whether a place lies on the curve, far enough from its ends and from other speeds for the tip to have full speed.
   [[nodiscard]] bool is_steady(std::size_t place) const {
     const double arc_mm = places_[place].arc_mm, speed = places_[place].speed_mm_s;
     if (arc_mm < cut_begin_mm_ + ramp_mm_ || arc_mm > cut_end_mm_ - ramp_mm_) return false;
@@ -68,8 +68,9 @@ class OwnCourse {
     }
     return true;
   }
-  /// The greatest speed about a place of the way from `place` on: where it changes, either may hold. The straight legs
-  /// end at rest; along the curve a move may begin before its waypoint, and slowing down takes its way.
+  /// The greatest intended speed near an arc length, where `place` is the place before it. Near a change, either speed
+  /// is allowed: along the curve, a move may begin before its waypoint, and slowing down takes some distance. The
+  /// straight legs end at rest.
   [[nodiscard]] double speed_about(std::size_t place, double arc_mm) const {
     constexpr double kNearMm = 0.3;
     const bool is_cut = arc_mm > cut_begin_mm_ + kNearMm && arc_mm < cut_end_mm_ - kNearMm;
@@ -92,12 +93,12 @@ class OwnCourse {
     add(place.tip_mm - (place.depth_mm + height_mm) * place.axis, place.axis, speed_mm_s);
   }
   std::vector<CoursePlace> places_;
-  double ramp_mm_ = 0.0;  ///< twice the way to the fastest speed, and a move either way
+  double ramp_mm_ = 0.0;  ///< twice the distance to reach the greatest speed, plus two moves
   double surface_in_mm_ = 0.0, surface_out_mm_ = 0.0, cut_begin_mm_ = 0.0, cut_end_mm_ = 0.0;
 };
 
-/// Where a tip is on the course: the nearest place near to the last one, so that the second lap of a ring is not taken
-/// for the first.
+/// Finds a tip's place on the course: the nearest place in a window about the last one, so that the overlap of a ring
+/// is not taken for its beginning.
 class Follower {
  public:
   explicit Follower(const OwnCourse& course) : places_(course.places()) {}
@@ -135,7 +136,7 @@ void end(Replay& replay, ReplayOutcome outcome, std::string reason, std::size_t 
   replay.line = line;
 }
 
-/// The largest of some values and when it was.
+/// The greatest of some positive values, and its time.
 struct Peak {
   double value = 0.0, time_s = 0.0, limit = 0.0;
   void see(double candidate, double at_s, double its_limit = 0.0) {
@@ -144,10 +145,10 @@ struct Peak {
   }
 };
 
-/// What a replay does on its own course.
+/// Measures of a replay along the course in its program's header.
 struct Conduct {
   Peak deviation_mm, lean_deg, way_back_mm;
-  Peak too_fast, too_slow;  ///< by how much, mm/s; the limit is the intended speed
+  Peak too_fast, too_slow;  ///< excess over the tolerance, mm/s; `limit` is the intended speed
   double first_arc_mm = 0.0, last_arc_mm = 0.0, rest_s = 0.0;
 };
 
@@ -178,7 +179,7 @@ Conduct conduct_of(const Replay& replay, const OwnCourse& course, const PlayerSe
   return conduct;
 }
 
-/// The first move that asks for more acceleration than the program was made with, or a hasty way to the start.
+/// The first move with more acceleration than the program was made with, or a movej faster than incise writes it.
 const ScriptCommand* hasty_command(const WrittenProgram& program) {
   constexpr double kRounding = 1.001;
   for (const ScriptCommand& command : program.commands) {
@@ -199,7 +200,7 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
   const OwnCourse course(program);
   const Conduct conduct = conduct_of(replay, course, settings);
   const double left_mm = std::max(conduct.first_arc_mm, course.length_mm() - conduct.last_arc_mm);
-  const bool is_at_full_speed = settings.speed_slider == 1.0;  // a slowed stream ends before the arm arrives
+  const bool is_at_full_speed = settings.speed_slider == 1.0;  // a slowed arm has not arrived when its stream ends
   if (conduct.deviation_mm.value > settings.max_deviation_mm) {
     end(replay, ReplayOutcome::OffCourse,
         fmt::format(
@@ -240,8 +241,8 @@ bool is_overridden(const ProgramHeader& header, const std::string& check) {
 }
 
 void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel& arm) {
-  constexpr std::size_t kStride = 2;  // every 4 ms: 0.2 mm at 50 mm/s …
-  constexpr double kMarginMm = 0.5;   // … with which, and with chords, a value may lie below that of the export
+  constexpr std::size_t kStride = 2;  // every 4 ms: 0.2 mm at 50 mm/s
+  constexpr double kMarginMm = 0.5;   // by this sampling, and by chords, a value may lie below that of the export
   constexpr double kMarginDeg = 0.1;
   if (replay.outcome != ReplayOutcome::Completed) return;
   const ProgramRecord record = program.record.value_or(ProgramRecord{});

@@ -4,15 +4,17 @@
 
 namespace incise::robot_detail {
 
-/// A completed replay is held to the course that its program's header tells of, in all phases: place, axis, order,
-/// speed and rests. Without such a header nothing is known.
+/// Compares a completed replay with the course of the path and settings in its program's header, in all phases:
+/// position, axis, order, speed and rests. Sets the outcome to the first fault. Without path and settings in the
+/// header, it does nothing.
 void judge_own_course(Replay& replay, const WrittenProgram& program, const PlayerSettings& settings);
 
-/// A completed replay is held to the limits of the arm's checks, those of the header or else the defaults: table, tool
-/// above the table, itself, base, joint limits, singularity. What the header says to be overridden is left out.
+/// Compares a completed replay with the limits of the arm's checks, those in the header or else the defaults: table,
+/// tool_table, self_collision, base, joint_limits and singularity. Checks that the header lists as overridden are
+/// skipped.
 void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel& arm);
 
-/// Whether the header says that a person took this check on them.
+/// Returns whether the header lists this check as overridden.
 [[nodiscard]] bool is_overridden(const ProgramHeader& header, const std::string& check);
 
 }  // namespace incise::robot_detail

@@ -18,10 +18,10 @@ namespace {
 
 using robot_detail::TipRoute;
 
-constexpr double kWithinRad = 1e-6;  // a table holds ten digits
-constexpr double kJumpRad = 0.05;    // in a cycle of 2 ms: 25 rad/s, ten times what any joint can do
+constexpr double kWithinRad = 1e-6;  // a table has ten digits
+constexpr double kJumpRad = 0.05;    // in a cycle of 2 ms: 25 rad/s, ten times the speed of any joint
 
-/// Plays commands one after the other into samples.
+/// Plays the commands, or the timed joints, into samples.
 class Playing {
  public:
   Playing(const WrittenProgram& program, const ArmModel& arm, const PlayerSettings& settings, Replay& replay)
@@ -54,7 +54,7 @@ class Playing {
     }
   }
 
-  /// Of a program that has run to its end.
+  /// Sets the outcome JointSpeed of a completed replay, if a joint was too fast.
   void judge_speed() {
     constexpr double kRounding = 1e-6;
     if (replay_.outcome != ReplayOutcome::Completed || replay_.max_joint_speed_share <= 1.0 + kRounding) return;
@@ -65,7 +65,7 @@ class Playing {
   }
 
  private:
-  /// Keeps the arm as it now is. @returns whether it can go on
+  /// Adds a sample of the arm's present state. @returns whether the replay can continue
   bool keep(std::size_t line) {
     ReplaySample sample;
     sample.time_s = time_;
@@ -94,7 +94,7 @@ class Playing {
     fastest_line_ = line;
   }
 
-  /// @returns whether so much time is left; if not, the program ends there
+  /// @returns whether `duration_s` still fits into kLongestProgramS; if not, the replay ends
   bool has_time_for(double duration_s, std::size_t line) {
     if (time_ + duration_s <= kLongestProgramS) return true;
     end(ReplayOutcome::TooLong, line);
@@ -119,7 +119,7 @@ class Playing {
     replay_.line = line;
   }
 
-  /// The first command behind a stop.
+  /// Plays moves up to the next stop. @returns the index of the command after it
   std::size_t route(std::size_t first) {
     const auto& commands = program_.commands;
     std::size_t last = first;
@@ -149,7 +149,7 @@ class Playing {
     return last + 1;
   }
 
-  /// Takes the joints of a pose nearest to the present ones.
+  /// Sets the joints to the solution for a pose that is nearest to the present joints.
   bool follow(const Mat4& T_base_tool, std::size_t line) {
     const InverseResult inverse = inverse_kinematics(arm_, T_base_tool * T_tool_flange_, q_[5]);
     double nearest = std::numeric_limits<double>::infinity();
@@ -170,7 +170,7 @@ class Playing {
   }
 
   void servo(const ScriptCommand& command) {
-    // The stream keeps its own time; the slider slows the arm.
+    // The stream keeps its time; the slider slows the arm.
     if (!is_streaming_) servo_until_ = time_;
     is_streaming_ = true;
     if (!has_time_for(command.seconds, command.line)) return;
@@ -180,7 +180,7 @@ class Playing {
       return Joints(command.gain * (target - q - command.lookahead_s * speed));
     };
     while (time_ + settings_.cycle_s <= servo_until_ + 1e-9) {
-      // Classical Runge and Kutta; at 2 ms and the largest gain the error is below 1e-6 of the step.
+      // Classical Runge-Kutta; at 2 ms and the greatest gain the error is below 1e-6 of the step.
       const double h = settings_.speed_slider * settings_.cycle_s;
       const Joints a1 = pull(q_, speed_), v2 = speed_ + 0.5 * h * a1, a2 = pull(q_ + 0.5 * h * speed_, v2);
       const Joints v3 = speed_ + 0.5 * h * a2, a3 = pull(q_ + 0.5 * h * v2, v3);

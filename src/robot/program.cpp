@@ -21,7 +21,7 @@ using robot_detail::ToolFrame;
 
 constexpr double kUnitTolerance = 1e-3;
 
-/// Axis times angle; of the vectors that mean the same rotation the one closest to `previous`.
+/// Axis times angle; of the vectors for the same rotation, the one closest to `previous`.
 Vec3 rotation_vector_near(const Mat3& rotation, const Vec3& previous) {
   const Eigen::AngleAxisd angle_axis(rotation);
   const Vec3 vector = angle_axis.angle() * angle_axis.axis();
@@ -35,7 +35,7 @@ class PoseWriter {
   PoseWriter(RobotProgram& program, const Course& course, const ToolFrame& frame)
       : program_(program), course_(course), frame_(frame) {}
 
-  /// A pose and the way to it.
+  /// Adds a pose; phase and speed are those of the move to it.
   void add(double time_s, const TipSample& place, ProgramPhase phase, double speed_mm_s) {
     ProgramPose pose;
     pose.tip_mm = place.tip_mm;
@@ -50,7 +50,7 @@ class PoseWriter {
     program_.poses.push_back(pose);
   }
 
-  /// Poses evenly along the cut and, apart from it, along the overlap.
+  /// Adds poses evenly along the cut and, separately, along the overlap.
   void add_cut(const Leg& leg, std::size_t moves) {
     const double length = course_.curve().length_mm();
     double begin = 0.0;
@@ -81,7 +81,7 @@ TipSample at_depth(const Leg& leg, double depth_mm) {
   return place;
 }
 
-/// The least number of equal moves that keeps to the spacing and the chord error.
+/// Number of equal moves, as few as possible, that keep the spacing and the chord error.
 std::size_t moves_for(const TipCurve& curve, const ProgramSettings& settings) {
   constexpr int kMostRefinements = 64;
   auto moves = static_cast<std::size_t>(std::ceil(curve.length_mm() / settings.max_spacing_mm));
@@ -89,8 +89,7 @@ std::size_t moves_for(const TipCurve& curve, const ProgramSettings& settings) {
   for (int i = 0; i < kMostRefinements; ++i) {
     const double error = curve.chord_error_mm(moves);
     if (error <= settings.chord_error_mm) return moves;
-    // The error falls with the square of the spacing, and a corner's only linearly: at least a tenth more moves each
-    // time.
+    // The error falls with the square of the spacing, but only linearly at a corner: at least a tenth more each time.
     const double factor = std::clamp(std::sqrt(error / settings.chord_error_mm), 1.1, 2.0);
     moves = static_cast<std::size_t>(std::ceil(static_cast<double>(moves) * factor));
     INCISE_REQUIRE(curve.length_mm() / static_cast<double>(moves) > 0.01,

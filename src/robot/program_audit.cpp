@@ -28,7 +28,7 @@ constexpr std::string_view kNeedMore[]{"heat",
                                        "registration_rmse",
                                        "registration_inliers",
                                        "registration_converged"};
-constexpr double kSameShare = 0.01;  // of value and limit: the header holds waypoints to 1 nm and values to 4 digits
+constexpr double kSameShare = 0.01;  // of value and limit: the header has waypoints to 1 nm and values to 4 digits
 constexpr double kSame = 1e-3;
 constexpr double kSameAngleRad = 1e-4, kSamePlaceMm = 0.01;
 
@@ -91,7 +91,7 @@ class Auditor {
   }
 
  private:
-  /// Nothing that would make it take for ever or fill the memory.
+  /// Whether making the program again takes acceptable time and memory.
   static bool is_sane(const ProgramRecord& record, const ToolPath& path) {
     constexpr double kLongestPathMm = 1e4;
     double way_mm = 0.0;
@@ -123,8 +123,8 @@ class Auditor {
     }
   }
 
-  /// The lines on the simulated cut against the gate: one verdict, as bad as its worst reason, none refused, each
-  /// caution accepted.
+  /// Checks the header's lines on the simulated cut: exactly one verdict, equal to the worst of its reasons and not
+  /// refused; each caution accepted.
   void hold_verdict() {
     std::vector<std::string> verdicts, accepted;
     for (const auto& [key, value] : program_.header) {
@@ -171,7 +171,7 @@ class Auditor {
     const ProgramChecks checks = check_program(made, *program_.path, record.limits);
     const bool has_surface = claims_.contains("surface_collision") || claims_.contains("shaft");
     for (const ProgramCheck& check : checks.checks) {
-      // Where the speed changes, rounding of the header decides which sample counts; the motion itself is held below.
+      // At a change of speed, rounding in the header decides which sample counts; hold_motion compares the motion.
       if ((check.name == "depth" && has_surface) || (check.name == "tip_speed" && has_changing_speed())) {
         audit_.not_recomputed.push_back(check.name);
         continue;
@@ -198,7 +198,7 @@ class Auditor {
                        [&](const Waypoint& w) { return w.speed_mm_s != waypoints.front().speed_mm_s; });
   }
 
-  /// One line of the header against the check made again.
+  /// Compares one line of the header with the check that was made again.
   void hold(const ProgramCheck& check) {
     if (robot_detail::is_overridden(program_.header, check.name)) return;
     const auto at = claims_.find(check.name);
@@ -212,7 +212,7 @@ class Auditor {
       contradict(fmt::format("'{}', made again '{}'", claim.text, robot_detail::held_against_its_limit(check)));
   }
 
-  /// The header's own numbers, and the poses of JSON.
+  /// Compares the header's own numbers, and the poses of JSON.
   void hold_numbers(const RobotProgram& made) {
     const auto told = [this](const char* key) {
       const auto at =
@@ -248,13 +248,13 @@ class Auditor {
            is_at_or_beside(i, made.size(), is_same_move);
   }
 
-  /// Where a phase or a speed changes, rounding of the header may put what stands there on the other side.
+  /// At a change of phase or speed, rounding in the header may move an entry to the other side.
   template <class Holds>
   static bool is_at_or_beside(std::size_t i, std::size_t size, const Holds& holds) {
     return holds(i) || (i > 0 && holds(i - 1)) || (i + 1 < size && holds(i + 1));
   }
 
-  /// The moves or rows against those that are written for the program made again.
+  /// Compares moves or rows with those of the program that was made again.
   void hold_motion(const RobotProgram& made) {
     if (made.motion.outcome != MotionOutcome::Found) return;
     if (!program_.joints.empty()) return hold_rows(made);
@@ -266,8 +266,8 @@ class Auditor {
     hold_commands(program_.commands, expected);
   }
 
-  /// One after the other. A stream holds still where a motion ends; for how long is a setting that the header does not
-  /// hold, and what counts is that it holds still.
+  /// Compares commands one after the other. A stream holds still where a motion ends. The header does not state for how
+  /// long, so any number of rests is accepted.
   void hold_commands(const std::vector<ScriptCommand>& found, const std::vector<ScriptCommand>& expected) {
     std::size_t i = 0, k = 0;
     while (i < found.size() || k < expected.size()) {
@@ -333,7 +333,7 @@ class Auditor {
   }
 
   static bool is_same_command(const ScriptCommand& a, const ScriptCommand& b) {
-    constexpr double kSameBlendShare = 0.3;  // blends: in [0, 0.5) of the spacing, usually 0.4
+    constexpr double kSameBlendShare = 0.3;  // blends are 0 to below 0.5 of the spacing, usually 0.4
     const auto is_near = [](double x, double y) { return std::abs(x - y) <= 1e-3 * std::abs(y) + 1e-9; };
     return a.kind == b.kind && a.phase == b.phase && (a.q_rad - b.q_rad).cwiseAbs().maxCoeff() <= kSameAngleRad &&
            (a.tip_mm - b.tip_mm).norm() <= kSamePlaceMm &&

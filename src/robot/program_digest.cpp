@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kDigits = 64;
 constexpr const char* kAlgorithm = "sha256 ";
 
-/// Where the digits of the only digest of a text begin, in its form as a line or in JSON; none or several: nothing.
+/// Position of the digest's digits in a text, as a line or in JSON; nothing if there is no digest, or several.
 std::optional<std::size_t> place_of_digits(std::string_view text) {
   const std::array marks{fmt::format("\n{}{}: {}", kHeaderMark, kDigestKey, kAlgorithm),
                          fmt::format("\"{}\",\n      \"{}", kDigestKey, kAlgorithm)};
@@ -33,7 +33,7 @@ std::optional<std::size_t> place_of_digits(std::string_view text) {
 }  // namespace
 
 ProgramHeader with_digest_entry(ProgramHeader header) {
-  // Whoever gives an entry of this name means something else.
+  // A given entry of this name is not this text's digest.
   std::erase_if(header, [](const auto& entry) { return entry.first == kDigestKey; });
   if (!header.empty()) header.emplace_back(kDigestKey, kAlgorithm + std::string(kDigits, '0'));
   return header;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::string_view kSchema = "incise.program/1";
 constexpr const char* kHint = "`incise export --format json` writes them";
 
-/// A check in a file: JSON has no infinity, so that a limit that is none is null.
+/// A check in a file. JSON has no infinity, so an infinite value or limit is null.
 struct ProgramCheckEntry {
   ProgramCheck check;
 };
@@ -55,7 +55,7 @@ void describe(Visitor& v, PoseEntry& entry) {
   v.derived("waypoint", p.waypoint, "Of the path, at or before this pose.");
 }
 
-/// Time, six joints and their speeds.
+/// Time (s), six joints (rad) and their speeds (rad/s).
 using MotionRow = std::array<double, 13>;
 struct MotionEntry {
   JointMotion motion;

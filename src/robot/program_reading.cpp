@@ -19,8 +19,8 @@ namespace incise {
 namespace robot_detail {
 namespace {
 
-constexpr double kSameToolMm = 1e-3;         // set_tcp holds fewer digits
-constexpr double kLargestAngleRad = 1000.0;  // some turns: what is far beyond is no angle, and cannot be shown as one
+constexpr double kSameToolMm = 1e-3;         // set_tcp has fewer digits
+constexpr double kLargestAngleRad = 1000.0;  // many turns: a number far beyond is no joint angle
 
 /// Exactly `count` finite numbers, separated by blanks. @throws DataError
 std::vector<double> numbers_of(const std::string& value, std::size_t count, const std::filesystem::path& file,
@@ -40,7 +40,7 @@ std::vector<double> numbers_of(const std::string& value, std::size_t count, cons
   return numbers;
 }
 
-/// One length of 0 to what a program may have. @throws DataError
+/// One length, 0 to kLargestLengthMm. @throws DataError
 double length_of(const std::string& value, const std::filesystem::path& file, const std::string& key) {
   const double length_mm = numbers_of(value, 1, file, key)[0];
   if (length_mm < 0.0 || length_mm > kLargestLengthMm)
@@ -62,7 +62,7 @@ Waypoint waypoint_of(const std::string& value, const std::filesystem::path& file
   return waypoint;
 }
 
-/// A tool can follow the waypoints, and the overlap is less than once around. @throws DataError
+/// Requires that a tool can follow the waypoints and that the overlap is less than once around. @throws DataError
 void require_course(const ToolPath& path, double overlap_mm, const std::filesystem::path& file) {
   try {
     const TipCurve curve(path);
@@ -120,7 +120,7 @@ class NamedNumbers {
         !numbers_.emplace(place, numbers_of(value.substr(blank), 1, file_, place)[0]).second)
       throw DataError(file_, "header " + key, fmt::format("'{}'", value), "a name and its number, each name once");
   }
-  /// Nothing where one is missing or none knows it.
+  /// Nothing if a name is missing or unknown.
   [[nodiscard]] std::optional<ProgramRecord> record() const {
     ProgramRecord record;
     std::size_t found = 0, expected = 0;

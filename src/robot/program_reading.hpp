@@ -7,7 +7,7 @@
 
 namespace incise::robot_detail {
 
-/// Refuses what was found in favour of what was expected, at a place that it knows. It throws DataError.
+/// Throws DataError with what was found and expected; it knows the place in the file.
 using Complain = std::function<void(const std::string& found, const std::string& expected)>;
 
 /// One line of a file, for messages.
@@ -15,22 +15,21 @@ struct LinePlace {
   const std::filesystem::path& file;
   std::size_t line = 0;
   [[noreturn]] void fail(const std::string& found, const std::string& expected, const std::string& hint = "") const;
-  /// Of this very line; the place has to outlive it.
+  /// Returns a Complain for this line. The LinePlace must outlive it.
   [[nodiscard]] Complain complain() const {
     return [this](const std::string& found, const std::string& expected) { fail(found, expected); };
   }
 };
 
-/// Takes in a header line `# incise.KEY: VALUE`; other comments are left alone. @returns the phase that a line `#
-/// phase: NAME` names
+/// Adds a line `# incise.KEY: VALUE` to the program's header; ignores other comments.
 void read_comment(const std::string& line, WrittenProgram& program);
 
-/// Fills path, tool and lengths from the header. @throws DataError naming the file and the header's key
+/// Fills path, record, tool and lengths from the header. @throws DataError naming the file and the header's key
 void read_header(WrittenProgram& program, const std::filesystem::path& file);
 
 [[nodiscard]] ProgramPhase phase_of(const std::string& name, const Complain& fail);
 
-/// Appends a row: later than the one before, within kLongestProgramS of the first, at angles that joints have.
+/// Appends a row. It must be later than the last row, within kLongestProgramS of the first, and have possible angles.
 void add_row(WrittenProgram& program, const TimedJoints& row, const Complain& fail);
 
 [[nodiscard]] WrittenProgram read_urscript(std::string_view text, const std::filesystem::path& file);

@@ -6,7 +6,7 @@
 
 namespace incise::robot_detail {
 
-/// Every number that a program was made with, and then every limit that it was held to, under its name in the header.
+/// Visits every setting that a program was made with, then every limit of its checks, with key and name in the header.
 template <class Record, class Visit>
 void describe(Record& r, Visit&& visit) {
   auto& s = r.settings;
@@ -68,7 +68,7 @@ void describe(Record& r, Visit&& visit) {
   visit("limit", "min_inlier_fraction", l.min_inlier_fraction);
 }
 
-/// What the header says of a check: "margin passed: 5.03 mm >= 2.2 mm".
+/// Returns the header's line on a check: "margin passed: 5.03 mm >= 2.2 mm".
 [[nodiscard]] std::string held_against_its_limit(const ProgramCheck& check);
 
 }  // namespace incise::robot_detail

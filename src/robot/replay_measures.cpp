@@ -37,14 +37,14 @@ Points intended_course(const ToolPath& path, const WrittenProgram& program) {
 
 namespace {
 
-/// Nearest distance to the polyline. Samples follow it, so the search begins where the last one ended and looks at a
-/// stretch about it; it looks everywhere when the tip is far off.
+/// Distance to the polyline. Samples follow it, so the search covers a window about the last place, and the whole
+/// polyline only if nothing near is found there.
 class CourseDistance {
  public:
   explicit CourseDistance(const Points& course) : course_(course) {}
   double operator()(const Vec3& p) {
     constexpr std::size_t kWindow = 60;  // 3 mm of the curve either way
-    constexpr double kFarOffMm = 0.02;   // on a ring the overlap lies over the beginning: another stretch may be nearer
+    constexpr double kFarOffMm = 0.02;   // beyond it, another part may be nearer: a ring's overlap covers its beginning
     const std::size_t low = last_ > kWindow ? last_ - kWindow : 0;
     double nearest = search(p, low, std::min(course_.size() - 1, last_ + kWindow));
     if (nearest > kFarOffMm) nearest = search(p, 0, course_.size() - 1);
@@ -87,7 +87,7 @@ void measure_deviation(Replay& replay) {
     ++count;
   }
   if (count > 0) replay.mean_deviation_mm = sum / static_cast<double>(count);
-  // In the tissue alone: on its way down and up a tool that is tilted is the farther off the longer the way.
+  // Only in the cut: on the way down and up, the deviation of a tilted tool grows with the distance.
   for (const ReplaySample& sample : replay.samples) {
     if (is_cut(sample.phase) || count == 0)
       replay.max_cut_deviation_mm = std::max(replay.max_cut_deviation_mm, sample.deviation_mm);
@@ -121,8 +121,8 @@ void measure_speed(Replay& replay, double end_zone_mm) {
 
 namespace {
 
-/// Height of a tip above the tissue's surface: above the entry of the course's place that lies nearest to it across the
-/// axis.
+/// Height of a tip above the tissue's surface, mm: along the axis of the nearest place of the course, from the place's
+/// entry point.
 double height_above_entry_mm(const ToolPath& path, const Vec3& tip_mm) {
   const TipCurve curve(path);
   const auto steps = static_cast<std::size_t>(std::ceil(curve.length_mm() / kIntendedSpacingMm));

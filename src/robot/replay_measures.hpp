@@ -4,20 +4,22 @@
 
 namespace incise::robot_detail {
 
-/// Down along the axis at the start, along the curve and its overlap, up along the axis at the end.
+/// Returns the intended course of the tip as a polyline, robot frame, mm: down along the axis at the start, along the
+/// curve and its overlap, up along the axis at the end.
 [[nodiscard]] Points intended_course(const ToolPath& path, const WrittenProgram& program);
 
-/// Distances of the samples from `replay.intended_mm`, the greatest (of all, and in the cut) and the mean of them.
+/// Measures the distances of the samples from `replay.intended_mm`: the greatest of all, the greatest and the mean in
+/// the cut.
 void measure_deviation(Replay& replay);
 
-/// Tip speed in the cut, `end_zone_mm` away from its ends.
+/// Measures the tip's speed in the cut, more than `end_zone_mm` away from its ends.
 void measure_speed(Replay& replay, double end_zone_mm);
 
-/// A completed replay that begins or ends in the tissue gets that outcome. By the surface that the path tells of, or,
-/// without one, by the program's phases.
+/// Sets the outcome of a completed replay that begins or ends in the tissue. Judges by the path's entry points or,
+/// without a path, by the program's phases.
 void judge_ends(Replay& replay, const ToolPath* path);
 
-/// A completed replay whose tip leaves the intended course by more than that in the cut gets that outcome.
+/// Sets the outcome of a completed replay whose tip leaves the intended course in the cut by more than this.
 void judge_deviation(Replay& replay, double max_deviation_mm);
 
 }  // namespace incise::robot_detail

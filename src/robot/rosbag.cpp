@@ -17,7 +17,7 @@ constexpr std::uint32_t kStampS = 1;  // time 0 means "now" to ROS
 constexpr std::uint8_t kOpMessage = 0x02, kOpBagHeader = 0x03, kOpIndex = 0x04, kOpChunk = 0x05, kOpChunkInfo = 0x06,
                        kOpConnection = 0x07;
 
-/// Bytes as ROS lays them out: little endian, strings and lists behind their 32-bit length.
+/// Bytes in the layout of ROS: little endian; strings and lists follow their 32-bit length.
 class Bytes {
  public:
   template <class Number>
@@ -30,7 +30,7 @@ class Bytes {
     data_ += value;
     return *this;
   }
-  /// One field of a record's header: NAME=value behind its length.
+  /// One field of a record's header: NAME=value after its length.
   Bytes& field(const std::string& name, const std::string& value) { return text(name + "=" + value); }
   template <class Number>
   Bytes& field_number(const std::string& name, Number value) {
@@ -100,7 +100,7 @@ std::string trajectory_message(const RobotProgram& program) {
 std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header) {
   robot_detail::require_finite(program);
   robot_detail::require_motion(program);
-  // The sums are those that ROS computes from the definitions; a subscriber refuses others.
+  // The MD5 sums are those that ROS computes from the definitions; a subscriber refuses others.
   const Connection connections[] = {
       {0, "/incise/header", "std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1", "string data\n",
        Bytes().text(robot_detail::header_lines(header)).data()},
@@ -137,7 +137,7 @@ std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header) 
                                .field_number("index_pos", index_pos)
                                .field_number("conn_count", std::uint32_t{2})
                                .field_number("chunk_count", std::uint32_t{1});
-  // The first record is filled up, so that a writer can come back to it.
+  // The first record is padded, so that a writer can change it later.
   const std::size_t padding = kBagHeaderRecord - 2 * sizeof(std::uint32_t) - bag_header.data().size();
   const std::string chunk_info = record(Bytes()
                                             .field_number("op", kOpChunkInfo)

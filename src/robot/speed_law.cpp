@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kBisections = 60;  // to the last bits
 
-/// The largest x in [low, high] that keeps the rule, which holds at low and is lost once for all as x grows.
+/// The greatest x in [low, high] for which the rule holds. @pre it holds at low and, once broken, stays so.
 template <class Rule>
 double last_that_keeps(double low, double high, const Rule& rule) {
   if (rule(high)) return high;
@@ -28,7 +28,7 @@ SpeedLaw::SpeedLaw(std::vector<SpeedPiece> pieces, double acceleration_mm_s2, do
   for (const SpeedPiece& piece : pieces) length_mm_ += piece.length_mm;
   INCISE_REQUIRE(length_mm_ > 0.0, "expected a course longer than 0 mm");
   std::erase_if(pieces, [](const SpeedPiece& piece) { return piece.length_mm <= 0.0; });
-  // Speeds where pieces meet: no more than either allows, nor than can be reached from the one before and lost again.
+  // Speeds where pieces meet: limited by both pieces, by speeding up from the start and by slowing down to the end.
   const std::size_t n = pieces.size();
   std::vector<double> at(n + 1, 0.0);
   for (std::size_t i = 1; i < n; ++i) at[i] = std::min(pieces[i - 1].speed_mm_s, pieces[i].speed_mm_s);
@@ -56,7 +56,7 @@ double SpeedLaw::change_length(double from, double to) const {
 }
 
 double SpeedLaw::reachable_speed(double from, double length, double cap) const {
-  if (cap <= from) return cap;  // slowing down is looked at from the other end
+  if (cap <= from) return cap;  // slowing down is considered from the other end
   return last_that_keeps(from, cap, [&](double to) { return change_length(from, to) <= length; });
 }
 
@@ -82,7 +82,7 @@ void SpeedLaw::change_speed(double to) {
     add(change / acceleration_ - rise, 0.0);
     add(rise, -jerk);
   }
-  rate_ = 0.0;  // rounding must not grow from change to change
+  rate_ = 0.0;  // or else rounding would accumulate
   speed_ = to;
 }
 

@@ -4,15 +4,16 @@
 
 namespace incise::robot_detail {
 
-/// A stretch of a course and the speed to run it at.
+/// A part of a course and its intended speed.
 struct SpeedPiece {
   double length_mm = 0.0;
   double speed_mm_s = 0.0;
 };
 
-/// Place and speed on a course over time, from rest to rest: pieces of constant jerk (an S-curve: acceleration rises,
-/// stays, falls). A higher speed begins to build up where its piece begins; a lower one is reached before its piece
-/// begins. Where a piece is too short for its speed, it is run more slowly: acceleration and jerk are never exceeded.
+/// Arc length and speed on a course over time, from rest to rest, in phases of constant jerk (S-curves: acceleration
+/// rises, stays constant, falls). The tip speeds up after the beginning of a faster piece, and slows down before the
+/// beginning of a slower one. In a piece that is too short for its speed, the tip stays slower: acceleration and jerk
+/// are never exceeded.
 class SpeedLaw {
  public:
   SpeedLaw() = default;
@@ -20,9 +21,9 @@ class SpeedLaw {
   SpeedLaw(std::vector<SpeedPiece> pieces, double acceleration_mm_s2, double jerk_mm_s3);
 
   [[nodiscard]] double duration_s() const { return phases_.empty() ? 0.0 : phases_.back().end_s; }
-  [[nodiscard]] double arc_mm(double time_s) const;      ///< before the start 0, after the end the length
-  [[nodiscard]] double speed_mm_s(double time_s) const;  ///< outside [0, duration] 0
-  [[nodiscard]] double time_s(double arc_mm) const;      ///< when a place is reached, to 1e-12 s
+  [[nodiscard]] double arc_mm(double time_s) const;      ///< 0 before the start, the length after the end
+  [[nodiscard]] double speed_mm_s(double time_s) const;  ///< 0 outside (0, duration)
+  [[nodiscard]] double time_s(double arc_mm) const;      ///< time at which a place is reached, to 1e-12 s
 
  private:
   struct Phase {
@@ -36,7 +37,7 @@ class SpeedLaw {
 
   double acceleration_ = 0.0, jerk_ = 0.0;
   double length_mm_ = 0.0;
-  // State at the end of the last phase, while building.
+  // State at the end of the last phase, during construction.
   double arc_ = 0.0, speed_ = 0.0, rate_ = 0.0;
   std::vector<Phase> phases_;
 };

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double kPlaneRadiusMm = 2.0;
 constexpr double kBridgeRadiusMm = 4.0;   // on tissue with a radius of 25 mm a plane of this size lies 0.2 mm off
-constexpr double kFarthestPointMm = 2.0;  // the nearest measured point from the axis, as where a path is laid down
+constexpr double kFarthestPointMm = 2.0;  // greatest distance of the nearest measured point from the axis
 constexpr double kMostVariance =
-    0.3;  // of the plane's height on the axis, over that of a point: four all round have 0.25
+    0.3;  // of the plane's height on the axis, divided by that of a point: four points round the axis give 0.25
 
 }  // namespace
 
@@ -28,14 +28,14 @@ std::optional<double> SurfaceProbe::depth_mm(const Vec3& p, const Vec3& axis) co
   double nearest2 = std::numeric_limits<double>::infinity();
   for (const Vec3& point : points_) nearest2 = std::min(nearest2, (point - p).cross(axis).squaredNorm());
   if (nearest2 > kFarthestPointMm * kFarthestPointMm) return std::nullopt;
-  // At the border of a hole, where few points lie or all on one side, the plane rests on more of them, farther off.
+  // At the border of a hole, with few points or all on one side, the plane is fitted to more and farther points.
   for (double radius = kPlaneRadiusMm; radius <= kBridgeRadiusMm; radius += 1.0)
     if (const std::optional<double> depth = below_plane_mm(p, axis, radius)) return depth;
   return std::nullopt;
 }
 
 std::optional<double> SurfaceProbe::below_plane_mm(const Vec3& p, const Vec3& axis, double radius_mm) const {
-  // Least squares: height against the two directions across the axis; the plane's height on the axis is wanted.
+  // Least squares for the height over the two directions across the axis; its value on the axis is the depth.
   const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
   Mat3 normal = Mat3::Zero();
   Vec3 right = Vec3::Zero();

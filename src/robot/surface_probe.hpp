@@ -7,19 +7,20 @@
 
 namespace incise::robot_detail {
 
-/// Asks a tissue surface in the robot's frame, of triangles or of points only, where it lies.
+/// Measures distances from a tissue surface in the robot's frame, given as triangles or as points only.
 class SurfaceProbe {
  public:
   /// @pre at least one vertex
   explicit SurfaceProbe(const TriMesh& surface);
 
-  /// How deep p lies below the surface along the tool's axis (a unit vector), mm. Of a cloud: below the plane through
-  /// its points within 2 mm of the axis, or at the border of a hole, where these are few or all on one side, within up
-  /// to 4 mm: until its height on the axis varies by no more than 0.55 of a point's noise. Nothing where the axis does
-  /// not meet the surface, where no such plane is found, or where the nearest point is more than 2 mm from the axis.
+  /// Returns the depth of p below the surface along the tool's axis (a unit vector), mm. In a cloud: below the plane
+  /// through its points within 2 mm of the axis. If these are few or all on one side, as at the border of a hole, the
+  /// radius grows up to 4 mm, until the standard deviation of the plane's height on the axis is at most 0.55 of a
+  /// point's noise. Nothing if the axis does not meet the surface, if there is no such plane, or if no point lies
+  /// within 2 mm of the axis.
   [[nodiscard]] std::optional<double> depth_mm(const Vec3& p, const Vec3& axis) const;
 
-  /// Distance of a point from the nearest triangle, or of a cloud from its nearest point, mm.
+  /// Returns the distance of p from the nearest triangle, or from the nearest point of a cloud, mm.
   [[nodiscard]] double distance_mm(const Vec3& p) const;
 
  private:

@@ -37,7 +37,7 @@ std::vector<TipCurve::Knot> TipCurve::knots(const std::vector<Vec3>& values, con
   if (!is_closed && n == 2) {
     result[0].slope = result[1].slope = (values[1] - values[0]) / chords[0];
   } else if (!is_closed) {
-    // An end takes on the parabola of its three points.
+    // At an end, the parabola through the last three points.
     result[0].bend = result[1].bend;
     result[0].slope = result[1].slope - chords[0] * result[1].bend;
     result[n - 1].bend = result[n - 2].bend;
@@ -87,7 +87,7 @@ TipCurve::TipCurve(const ToolPath& path) : is_closed_(path.is_closed) {
     pieces_.push_back({tip_knots[i], tip_knots[next], axis_knots[i], axis_knots[next], chords[i],
                        path.waypoints[i].depth_mm, path.waypoints[next].depth_mm, path.waypoints[i].speed_mm_s});
   }
-  // Arc length by Simpson's rule over each short stretch.
+  // Arc length by Simpson's rule over each short interval.
   double arc = 0.0;
   for (std::size_t i = 0; i < pieces; ++i) {
     const auto rate = [this, i](double t) {
@@ -115,7 +115,7 @@ TipSample TipCurve::at(double arc_mm) const {
   const auto i = static_cast<std::size_t>(after - fine_.begin()) - 1;
   const Fine &a = fine_[i], &b = fine_[i + 1];
   const double span = b.arc_mm - a.arc_mm, u = (arc_mm - a.arc_mm) / span;
-  // The parameter over the arc length as a cubic with the right slopes: the tip's speed has no steps.
+  // The parameter is a cubic of the arc length with the right slopes, so the tip's speed is continuous.
   const std::size_t piece = i / kFinePerPiece;
   const auto k = static_cast<double>(i - piece * kFinePerPiece);
   const double u2 = u * u, u3 = u2 * u;

@@ -15,25 +15,26 @@ struct TipSample {
   std::size_t waypoint = 0;  ///< at or before this place
 };
 
-/// The smooth course of the tool's tip through the waypoints of a path, measured by arc length. A closed course goes on
-/// past its end.
+/// The smooth course of the tool's tip through the waypoints of a path, parametrised by arc length. A closed course
+/// continues past its end.
 ///
-/// Between two waypoints: the quintic with the places, slopes and second derivatives that the parabolas through each
-/// waypoint and its neighbours have there, over the chord length. So direction and curvature of the tip's course, and
-/// those of the axis, are continuous, and one waypoint moves no more than three pieces on either side.
+/// Between two waypoints the course is a quintic over the chord length. Its position, slope and second derivative at
+/// each waypoint are those of the parabola through that waypoint and its neighbours. Thus direction and curvature of
+/// the tip's course and of the axis are continuous, and a waypoint affects at most three pieces on either side.
 class TipCurve {
  public:
   explicit TipCurve(const ToolPath& path);
   [[nodiscard]] double length_mm() const { return fine_.back().arc_mm; }
-  /// @param arc_mm  from the first waypoint; beyond the length a closed course starts again, an open one has ended.
+  /// Returns the place at an arc length from the first waypoint. Beyond the length, a closed course starts again and an
+  /// open one stays at its end.
   [[nodiscard]] TipSample at(double arc_mm) const;
-  /// Largest distance between the course and straight moves of equal arc length `spacing_mm`.
+  /// Returns the greatest distance between the course and `moves` straight moves over equal arc lengths, mm.
   [[nodiscard]] double chord_error_mm(std::size_t moves) const;
-  /// Arc length at waypoint i; the one past the last is the length of a closed course.
+  /// Returns the arc length at waypoint i; for i past the last waypoint, the length of a closed course.
   [[nodiscard]] double arc_at_waypoint(std::size_t i) const;
 
  private:
-  /// A curve's place, slope and second derivative at a waypoint.
+  /// A curve's position, slope and second derivative at a waypoint.
   struct Knot {
     Vec3 value, slope, bend;
   };
@@ -45,8 +46,8 @@ class TipCurve {
   };
   struct Fine {
     double arc_mm = 0.0;
-    double t_per_mm = 0.0;         ///< slope of the piece's parameter over the arc length
-    double t_per_mm_at_end = 0.0;  ///< at the next sample; pieces differ in their parameter
+    double t_per_mm = 0.0;         ///< derivative of the piece's parameter with respect to arc length
+    double t_per_mm_at_end = 0.0;  ///< the same at the next sample, still in this piece's parameter
     Vec3 tip_mm;
   };
   [[nodiscard]] static std::vector<Knot> knots(const std::vector<Vec3>& values, const std::vector<double>& chords,
@@ -56,7 +57,7 @@ class TipCurve {
   [[nodiscard]] TipSample sample(std::size_t piece, double t) const;
 
   std::vector<Piece> pieces_;
-  std::vector<Fine> fine_;  ///< closely spaced samples, the same count in every piece, and the end
+  std::vector<Fine> fine_;  ///< closely spaced samples, equally many in every piece, and the end
   bool is_closed_;
 };
 

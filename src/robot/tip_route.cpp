@@ -6,7 +6,7 @@
 namespace incise::robot_detail {
 namespace {
 
-constexpr double kTrapezoidJerk = 1e9;        // mm/s³: the controller's ramps have corners; 1 µs long here
+constexpr double kTrapezoidJerk = 1e9;        // mm/s³: nearly the controller's trapezoid
 constexpr double kStraightRad = 1e-9;         // a turn that needs no circle
 constexpr double kOverlapToleranceMm = 1e-5;  // the script's last digit
 constexpr double kSamePlaceMm = 1e-9;
@@ -22,7 +22,7 @@ Eigen::Quaterniond turn_of(const Vec3& rotation_vector) {
 TipRoute::TipRoute(const Vec3& start_mm, const Mat3& R_start, std::span<const ScriptCommand> commands, double slider) {
   knots_.push_back({0.0, Eigen::Quaterniond(R_start)});
   Vec3 here = start_mm;
-  double trimmed = 0.0;  // of the way's beginning, by the blend before
+  double trimmed = 0.0;  // length that the previous blend takes from this move
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const ScriptCommand& command = commands[i];
     const Vec3 corner_from = i == 0 ? start_mm : commands[i - 1].tip_mm;

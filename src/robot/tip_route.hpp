@@ -9,10 +9,10 @@
 
 namespace incise::robot_detail {
 
-/// The tip's way through consecutive movel and movep commands up to the next stop: straight lines, and circles that
-/// touch them where blends are.
+/// The tip's route through consecutive movel and movep commands up to the next stop: straight lines, and at blends the
+/// circles that touch them.
 ///
-///        P1        r: from the corner to where the circle begins
+///        P1        r: from the corner to the beginning of the circle
 ///       /  \.      the tip cuts the corner by r tan(theta / 4)
 ///      / (  )\     theta: the turn at the corner
 ///    P0       P2
@@ -24,7 +24,7 @@ class TipRoute {
   [[nodiscard]] bool do_blends_overlap() const { return overlap_command_ >= 0; }
   [[nodiscard]] std::size_t overlap_line() const { return overlap_line_; }
   [[nodiscard]] double duration_s() const { return law_.duration_s(); }
-  /// Pose of the tool, and the number of the command that it is on the way to.
+  /// Returns T_base_tool at a time, mm, and in `command` the index of the command at whose pose the current move ends.
   [[nodiscard]] Mat4 at(double time_s, std::size_t& command) const;
 
  private:
@@ -50,7 +50,7 @@ class TipRoute {
   std::size_t overlap_line_ = 0;
 };
 
-/// Axis times angle as a rotation.
+/// Returns the rotation given as axis times angle, rad.
 [[nodiscard]] Eigen::Quaterniond turn_of(const Vec3& rotation_vector);
 
 }  // namespace incise::robot_detail

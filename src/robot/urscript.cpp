@@ -37,7 +37,7 @@ std::string tcp_line(const Mat4& T_flange_tool) {
   return fmt::format("  set_tcp({})\n", pose_text(T_flange_tool.topRightCorner<3, 1>(), turn.angle() * turn.axis()));
 }
 
-/// Blend radius at pose i, m: none where the course stops.
+/// Blend radius at pose i, m; 0 where the course stops.
 double blend_m(const RobotProgram& program, std::size_t i, double fraction) {
   if (i + 1 >= program.poses.size() || !is_cut(program.poses[i + 1])) return 0.0;
   const double before = (program.poses[i].tip_mm - program.poses[i - 1].tip_mm).norm();
@@ -78,7 +78,7 @@ std::string stream(const RobotProgram& program, const UrScriptSettings& settings
     const ProgramPhase now = program.poses[std::min(sample.pose + 1, program.poses.size() - 1)].phase;
     const std::string line = fmt::format("  servoj({}, 0, 0, {}", joints_text(sample.q_rad), rest);
     if (phase && now != *phase && !(now == ProgramPhase::Overlap && *phase == ProgramPhase::Cut)) {
-      // The motion has come to rest here: the arm, which trails the stream, is given time to arrive.
+      // The motion has come to rest here. The arm trails the stream, so it needs time to arrive.
       for (int k = 0; k < settle; ++k) text += line;
     }
     if (!phase || now != *phase) text += fmt::format("  # phase: {}\n", to_string(now));

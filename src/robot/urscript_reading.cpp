@@ -24,10 +24,10 @@ class Scanner {
     skip_blanks();
     const char* begin = line_.c_str() + at_;
     char* end = nullptr;
-    // strtod would also take "nan", "inf" and hexadecimals, which no script of ours holds.
+    // strtod would also accept "nan", "inf" and hexadecimal numbers, which incise does not write.
     const bool starts_well = std::string_view("+-.0123456789").find(*begin) != std::string_view::npos && *begin != '\0';
     const double value = starts_well ? std::strtod(begin, &end) : 0.0;
-    // m, rad, m/s, s: what is far beyond has no square that could be computed with.
+    // In m, rad, m/s or s: squares of much larger numbers could overflow.
     constexpr double kLargest = 1e12;
     if (!starts_well || end == begin || !(std::abs(value) <= kLargest)) fail("a number within 1e12");
     at_ += static_cast<std::size_t>(end - begin);
@@ -122,7 +122,7 @@ ScriptCommand read_rest(const std::string& word, Scanner& scan, const LinePlace&
   return command;
 }
 
-/// Where in the file the reader is.
+/// Section of the file that the reader has reached.
 enum class Section { Before, Inside, After, Called };
 
 class ScriptReader {
@@ -184,7 +184,7 @@ class ScriptReader {
       scan.finish();
       section_ = Section::After;
     } else if (word == "set_tcp") {
-      // One tool for all of it: the player knows no other.
+      // One tool for the whole program: the player has only one.
       if (has_tool_) place_.fail("a second set_tcp", "one tool for the whole program");
       if (!program_.commands.empty()) place_.fail("set_tcp after a move", "set_tcp before the first move");
       has_tool_ = true;
@@ -224,7 +224,7 @@ class ScriptReader {
   std::string name_;
   ProgramPhase phase_ = ProgramPhase::Approach;
   bool has_tool_ = false;
-  double seconds_ = 0.0;  ///< of rests and streams
+  double seconds_ = 0.0;  ///< total of rests and streams
 };
 
 }  // namespace

@@ -18,8 +18,8 @@
 namespace incise::second_bench {
 namespace {
 
-constexpr double kRoundRingMm = 4.0;     // beyond the planned ring and below it: where bricks are small
-constexpr double kToSilhouetteMm = 5.0;  // from the ring of the tumour that lies farthest aside
+constexpr double kRoundRingMm = 4.0;     // width of the zone of small bricks beyond the planned ring and below it
+constexpr double kToSilhouetteMm = 5.0;  // least distance of the ring from the silhouette
 constexpr double kStiffnessWaveMm = 15.0;
 constexpr double kAblationWaveMm = 12.0;
 constexpr double kReliefWaveMm = 25.0;
@@ -30,7 +30,7 @@ constexpr double kAtRest = 1e-3;  // residual over reactions
 constexpr std::uint64_t kShapeStream = 0x9ddfea08ULL;
 constexpr std::uint64_t kFieldStream = 0x2545f491ULL;
 
-/// Planes at the marks, and evenly between them, about `sizes` apart.
+/// Places planes at the marks, and evenly spaced planes between them, about `sizes` apart.
 std::vector<double> planes(const std::vector<double>& marks, const std::vector<double>& sizes) {
   std::vector<double> result{marks.front()};
   for (std::size_t n = 1; n < marks.size(); ++n) {
@@ -48,7 +48,7 @@ struct Tumor {
   double depth_mm = 4.0;
 };
 
-/// How far the tumour's middle lies beside the mid-line: a share of the room that its ring leaves there.
+/// Signed distance of the tumour's middle from the mid-line: a share of the room that its ring leaves there.
 double aside_mm(const Specimen& specimen, const TongueShape& shape, double y) {
   const double middle = midline_x_mm(shape, y);
   const double heading = specimen.tumor_aside < 0.0 ? -1.0 : 1.0;
@@ -88,8 +88,8 @@ bool is_in(const Tumor& tumor, const TongueShape& shape, const Vec3& p) {
   return span && span->high_mm - p.z() <= tumor.depth_mm * std::sqrt(1.0 - share * share);
 }
 
-/// Fibres run along the gradient of a potential that is harmonic between clamp and suture (Laplace fibres); in what
-/// these hold, along y.
+/// Fibres follow the gradient of a potential that is harmonic between clamp and suture (Laplace fibres); in the held
+/// tissue they follow y.
 std::vector<Vec3> fibres_of(const BrickGrid& grid, const std::vector<Voxels>& voxels, double low_y, double high_y) {
   const std::size_t count = grid.brick_count();
   std::vector<float> potential(count, 0.5F);
@@ -171,7 +171,7 @@ BrickGrid grid_of(const Specimen& specimen, const Resolution& resolution, const 
   return grid;
 }
 
-/// What the suture holds.
+/// The suture's pull, N.
 double pull_n(BodyState& state) {
   set_tissue_forces(state.tissue, 0.0F, static_cast<float>(kWeightMnMm3));
   add_platform(state.tissue, state.platform);
@@ -183,7 +183,7 @@ double pull_n(BodyState& state) {
   return 1e-3 * sum.norm();
 }
 
-/// Columns of voxels, and the voxels whose middles lie in the shape.
+/// Returns, per brick, the voxels whose middles lie in the shape, and fills `columns`.
 std::vector<Voxels> fill(const BrickGrid& grid, const TongueShape& shape,
                          std::vector<std::optional<TissueSpan>>& columns) {
   std::vector<Voxels> voxels(grid.brick_count(), 0);
@@ -225,7 +225,7 @@ BrickMaterial material_of(const Specimen& specimen, double stiffness, double tum
   return material;
 }
 
-/// The sole: one point under the middle of each column of bricks; and the platform's relief under it.
+/// The platform: points of the sole under the middle of each column of bricks, and the relief under them.
 Platform platform_of(const BrickTissue& tissue, const TongueShape& shape, const Specimen& specimen,
                      const SmoothField& relief) {
   Platform platform;
@@ -248,7 +248,7 @@ Platform platform_of(const BrickTissue& tissue, const TongueShape& shape, const 
   return platform;
 }
 
-/// Clamps the root, draws the tip by the suture, and moves what lies between evenly.
+/// Clamps the root, pulls the tip by the suture, and moves the tissue between by linear interpolation.
 void hold(BodyState& state, const Specimen& specimen, double suture_y, double clamp_y) {
   constexpr double kOnPlaneMm = 1e-4;
   const double angle = units::rad_from_deg(specimen.stretch_angle_deg);
@@ -267,7 +267,7 @@ void hold(BodyState& state, const Specimen& specimen, double suture_y, double cl
   }
 }
 
-/// Lets the stretched body come to rest; reads the gauge, and waits for the cut.
+/// Lets the stretched body come to rest, reads the gauge, and relaxes the tissue until the cut.
 void stretch(Body& body, BodyState& state, Monitor& monitor) {
   const Specimen& specimen = body.specimen;
   const auto rests = [&] {

@@ -9,15 +9,15 @@
 
 namespace incise::second_bench {
 
-/// All that the bench knows of a held specimen.
+/// The state of a specimen in its holder.
 struct BodyState {
   BrickTissue tissue;
   Platform platform;
   TongueShape shape;
-  std::vector<std::optional<TissueSpan>> columns;  ///< of voxels, x fastest
-  std::vector<float> energy_j;                     ///< per brick: what a voxel takes until it parts
-  Points tumor_edge_rest;                          ///< counter-clockwise seen from above
-  std::vector<std::int32_t> suture_nodes;          ///< that the suture holds
+  std::vector<std::optional<TissueSpan>> columns;  ///< per column of voxels, x fastest; nullopt: no tissue
+  std::vector<float> energy_j;                     ///< per brick: heat that parts one of its voxels
+  Points tumor_edge_rest;                          ///< counter-clockwise seen from above, mm
+  std::vector<std::int32_t> suture_nodes;          ///< nodes that the suture holds
   float viscous_ratio = 0.0F;                      ///< as of begin_step()
   float viscous_time_s = 1.0F;
 

@@ -6,9 +6,8 @@
 namespace incise::second_bench {
 namespace {
 
-/// Sums and differences of eight corner values: entry m holds the sum over corners, signed by the corner's side along
-/// each axis whose bit is in m (bit 0: x). Entries 1, 2, 4 are gradients, 3, 5, 6, 7 bending modes. The same operation
-/// brings values of modes back to the corners.
+/// Replaces eight corner values by their modes: entry m is the sum over corners, signed by the corner's side along each
+/// axis whose bit is in m (bit 0: x). Entries 1, 2, 4 are gradients; 3, 5, 6, 7 are bending modes.
 inline void mix(std::array<Lanes, 8>& value) {
   for (std::size_t bit = 1; bit < 8; bit *= 2)
     for (std::size_t c = 0; c < 8; ++c) {
@@ -18,6 +17,7 @@ inline void mix(std::array<Lanes, 8>& value) {
       value[c | bit] = high - low;
     }
 }
+/// Replaces eight values of modes by corner values: the transpose of mix().
 inline void spread(std::array<Lanes, 8>& value) {
   for (std::size_t bit = 1; bit < 8; bit *= 2)
     for (std::size_t c = 0; c < 8; ++c) {
@@ -35,7 +35,7 @@ inline Lanes size_of(const Lanes& a) {
   return a < 0.0F ? -a : a;
 }
 
-/// Deformation and what follows from it.
+/// Deformation and the quantities derived from it.
 struct Strain {
   std::array<std::array<Lanes, 8>, 3> modes;  // of the positions
   std::array<std::array<Lanes, 3>, 3> f;      // deformation gradient [component][axis at rest]
@@ -76,7 +76,8 @@ inline void find_strain(const BrickTissue& tissue, const Octet& octet, Strain& s
 
 constexpr std::array<std::array<std::size_t, 3>, 3> kAt{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}}};  // place in Octet::past
 
-/// Second Piola-Kirchhoff stress that a sudden change of shape adds, per ratio: 2 c1 (C - I), and what stiffens.
+/// Second Piola-Kirchhoff stress that a sudden change of shape adds, divided by the viscous ratio: 2 c1 (C - I) and the
+/// terms of stiffening and fibres.
 inline std::array<Lanes, 6> sudden_stress(const Octet& octet, const Strain& s) {
   const auto& a = octet.fibre_axis;
   const Lanes more = s.shape - 4.0F * octet.c1;  // 2 dW/dI1 - 2 c1, less the 2 c1 of I
@@ -105,7 +106,7 @@ void for_each_octet(BrickTissue& tissue, Visit visit) {
 void set_tissue_forces(BrickTissue& tissue, float viscous_gain, float weight_mn_mm3) {
   std::fill(tissue.force.begin(), tissue.force.end(), std::array<float, 4>{});
   for_each_octet(tissue, [&](const Octet& octet, Strain& s) {
-    // First Piola-Kirchhoff stress F S + volume's part.
+    // First Piola-Kirchhoff stress: F S + volumetric part.
     const auto& axis = octet.fibre_axis;
     std::array<Lanes, 6> t = sudden_stress(octet, s);
     for (std::size_t n = 0; n < 6; ++n) t[n] = viscous_gain * t[n] + octet.past[n];
@@ -161,7 +162,7 @@ float begin_step(BrickTissue& tissue, float ratio, float time_s, float step_s) {
   const float decay = std::exp(-share);
   const float gain = ratio * (1.0F - decay) / share;
   for_each_octet(tissue, [&](Octet& octet, const Strain& s) {
-    // What is kept between steps in `past` is Q; within a step it is what counts beside gain * S.
+    // Between steps `past` is Q; within a step it is decay * Q - gain * S, with S at the beginning of the step.
     const std::array<Lanes, 6> sudden = sudden_stress(octet, s);
     for (std::size_t n = 0; n < 6; ++n) {
       octet.past[n] = decay * octet.past[n] - gain * sudden[n];

@@ -28,7 +28,7 @@ void set_lane(Lanes& lanes, int piece, float value) {
   lanes[piece % kLanes] = value;
 }
 
-/// Copies all that a piece has but its corners and its volume.
+/// Copies material, size, viscous stress and corner nodes of a piece to another one.
 void copy_state(BrickTissue& tissue, int from, int to) {
   const Octet source = tissue.octets[static_cast<std::size_t>(from) / kLanes];
   Octet& target = tissue.octets[static_cast<std::size_t>(to) / kLanes];
@@ -66,7 +66,7 @@ int add_piece(BrickTissue& tissue, std::size_t brick) {
   if (piece % kLanes == 0) {
     Octet& octet = tissue.octets.emplace_back();
     octet = Octet{};
-    for (Lanes& lanes : octet.inverse_size) lanes += 1.0F;  // lanes without a piece divide by nothing
+    for (Lanes& lanes : octet.inverse_size) lanes += 1.0F;  // in lanes without a piece: no division by 0
     octet.lambda += 1.0F;
     octet.c1 += 1.0F;
   }
@@ -84,7 +84,7 @@ std::int32_t add_node(BrickTissue& tissue, const std::array<float, 4>& position)
   return static_cast<std::int32_t>(tissue.position.size()) - 1;
 }
 
-/// Gives the pieces round a corner of the grid one node for each set of them that hangs together there.
+/// Gives each connected set of pieces round a corner of the grid its own node.
 void share_corner(BrickTissue& tissue, int i, int j, int k) {
   struct Member {
     int piece;
@@ -205,7 +205,7 @@ int BrickTissue::piece_with(std::size_t brick, int bit) const {
 }
 
 Rider BrickTissue::rider_at(const Vec3& rest_mm) const {
-  // The nearest voxel of the bricks around; they are few, and a rider is made once.
+  // A search over all voxels of the bricks around is fast enough: they are few, and a rider is made once.
   std::array<int, 3> middle{};
   for (int axis = 0; axis < 3; ++axis) middle[static_cast<std::size_t>(axis)] = grid.along(axis, rest_mm[axis]);
   Rider rider;

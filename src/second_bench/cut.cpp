@@ -17,26 +17,26 @@ namespace incise::second_bench {
 namespace {
 
 constexpr double kNeedleMm = kElectrodeRadiusMm;
-constexpr double kContactKpaMm = 100.0;  // pressure per depth at which tissue lies in the needle
-constexpr double kShellMm = 0.25;        // beyond the metal: where tissue still sticks to it
-constexpr double kStickMm = 0.1;         // of slip, at which adhesion has half its strength
-constexpr double kEngagedMm = 5.0;       // length of needle for which a full arc needs tissue
-constexpr double kHalfSpeedMmS = 7.0;    // at which adhesion has half its fast strength
-constexpr double kCookedMm = 1.0;        // beyond the arc's reach: where tissue is heated enough to shrink
+constexpr double kContactKpaMm = 100.0;  // pressure per depth of tissue inside the needle
+constexpr double kShellMm = 0.25;        // beyond the metal: tissue within it sticks to the needle
+constexpr double kStickMm = 0.1;         // slip at which adhesion has 1/√2 of its strength
+constexpr double kEngagedMm = 5.0;       // length of needle that must be in tissue to use the arc's whole power
+constexpr double kHalfSpeedMmS = 7.0;    // at which adhesion has half its strength at high speed
+constexpr double kCookedMm = 1.0;        // beyond the arc's reach: tissue within it is heated enough to shrink
 constexpr double kBreathS = 4.0;
 constexpr double kDwellStepS = 0.5;
 constexpr double kCuttingShare = 0.9;  // of a cut's time; the rest is settling
 constexpr double kOnAxisMm = 1e-6;     // nearer than this a push has no direction
 constexpr double kLeastDamping = 0.12;
-constexpr int kRenewed = 8;  // iterations between two bounds of the masses
-constexpr double kPhotographS = 34.0;
+constexpr int kRenewed = 8;  // iterations between two updates of the masses
+constexpr double kPhotographS = 34.0;  // after the cut
 constexpr int kMostSettling = 600;
 constexpr double kAtRest = 3e-3;  // free forces over reactions
 
 struct Needle {
   Vec3 tip = Vec3::Zero();
   Vec3 axis = -Vec3::UnitZ();
-  /// From the needle's axis to a point.
+  /// Returns the vector from the nearest point of the needle's axis to a point, mm.
   [[nodiscard]] Vec3 offset(const Vec3& p) const {
     const double above = std::max(0.0, -(p - tip).dot(axis));
     return p - (tip - above * axis);
@@ -49,8 +49,8 @@ struct NearVoxel {
   int bit = 0;
   double volume_mm3 = 0.0;
   double area_mm2 = 0.0;       // of a face, about
-  Vec3 before = Vec3::Zero();  // at the step's start
-  Vec3 drag = Vec3::Zero();    // by the needle in the last iteration
+  Vec3 before = Vec3::Zero();  // position at the step's start
+  Vec3 drag = Vec3::Zero();    // the needle's force on it in the last iteration, mN
 };
 
 Needle between(const TipPose& a, const TipPose& b, double share) {
@@ -82,10 +82,10 @@ class Cutting {
   }
 
  private:
-  /// Poses at the ends of steps: every way_mm, and every half second where the tool dwells; tissue sways between them.
+  /// Returns the poses at the ends of steps, at most way_mm and half a second apart, relative to the swaying tissue.
   [[nodiscard]] std::vector<TipPose> steps_of(const std::vector<TipPose>& course) const {
     std::vector<TipPose> part;
-    std::vector<double> done;  // way, in steps, until each pose
+    std::vector<double> done;  // per pose: steps until it
     for (const TipPose& pose : course) {
       if (!pose.is_cutting) continue;
       const double way = part.empty() ? 0.0 : (pose.tip_mm - part.back().tip_mm).norm() / resolution_.way_mm;
@@ -119,14 +119,14 @@ class Cutting {
     return places;
   }
 
-  /// By how much the tool moves against tissue that breathes and drifts.
+  /// Returns the displacement of the tool relative to tissue that breathes and drifts, mm.
   [[nodiscard]] Vec3 swayed_mm(double time_s, double share) const {
     const double phase = Random(stream_of(specimen_.seed, "breath")).uniform(0.0, 2.0 * units::kPi);
     const double breath = std::sin(2.0 * units::kPi * time_s / kBreathS + phase);
     return {-share * specimen_.drift_mm, 0.0, -specimen_.breathing_mm * breath};
   }
 
-  /// The suture cuts in: its grip moves back towards the root.
+  /// The suture cuts into the tissue: its grip moves back towards the root.
   void creep(double share) {
     for (std::size_t n = 0; n < suture_start_.size(); ++n)
       state_.tissue.position[static_cast<std::size_t>(state_.suture_nodes[n])][1] =
@@ -166,13 +166,13 @@ class Cutting {
     }
   }
 
-  /// Traction at which tissue that slips fast lets go.
+  /// The greatest traction of adhesion at the present speed, kPa.
   [[nodiscard]] double adhesion_kpa() const {
     return specimen_.adhesion_kpa * (1.0 + specimen_.char_per_mm * travelled_mm_) * speed_mm_s_ /
            (speed_mm_s_ + kHalfSpeedMmS);
   }
 
-  /// The needle's forces on tissue. @returns their sum, mN.
+  /// Adds the needle's forces on tissue. @returns their sum, mN.
   Vec3 add_needle(const Needle& needle, const Vec3& way) {
     const double adhesion = adhesion_kpa();
     Vec3 sum = Vec3::Zero();
@@ -191,7 +191,7 @@ class Cutting {
     return sum;
   }
 
-  /// The stiffness of these forces, as masses.
+  /// Adds the fictitious masses for the stiffness of these forces.
   void add_needle_masses(const Needle& needle) {
     const double adhesion = adhesion_kpa();
     for (const NearVoxel& voxel : near_) {
@@ -204,7 +204,7 @@ class Cutting {
 
   void step(const TipPose& from, const TipPose& to, double step_s) {
     BrickTissue& tissue = state_.tissue;
-    // The needle gives way to the force of the step before.
+    // The needle bends under the force of the previous step.
     const Vec3 bent = -1e-3 * specimen_.bending_mm_n * force_mn_;
     TipPose first = from, last = to;
     first.tip_mm += bent_mm_;
@@ -216,7 +216,7 @@ class Cutting {
     const float gain = begin_step(tissue, state_.viscous_ratio, state_.viscous_time_s, static_cast<float>(step_s));
     const int count = resolution_.relaxations;
     for (int n = 0; n < count; ++n) {
-      const double share = std::min(1.0, (n + 1.0) / (0.5 * count));  // the second half at rest at the step's end
+      const double share = std::min(1.0, (n + 1.0) / (0.5 * count));  // rests at the step's end in the second half
       const Needle needle = between(first, last, share);
       const Vec3 way = share * (last.tip_mm - first.tip_mm);
       if (n % kRenewed == 0) {
@@ -237,7 +237,7 @@ class Cutting {
     if (specimen_.shrinking > 0.0) cook(end);
   }
 
-  /// What heat and force do to tissue in reach; what has taken enough of them parts.
+  /// Adds the effects of heat and force to the dose of tissue in reach, and removes voxels whose dose is full.
   void burn(const Needle& needle, const Vec3& way, double step_s) {
     BrickTissue& tissue = state_.tissue;
     const double reach = kNeedleMm + specimen_.reach_mm;
@@ -250,8 +250,7 @@ class Cutting {
       weights[n] = share * near_[n].volume_mm3;
       sum += weights[n];
     }
-    // An eighth of the disc in reach, over the needle's length, is what a full arc feeds on; weights are 1/2 on
-    // average.
+    // A full arc needs an eighth of the disc in reach, over the engaged length of the needle; weights average 1/2.
     const double least = 0.5 * 0.125 * units::kPi * reach * reach * kEngagedMm;
     const double heat_j = std::max(0.0, power_w_ - specimen_.lost_power_w) * step_s;
     std::map<int, Voxels> gone;
@@ -273,7 +272,7 @@ class Cutting {
     result_.loose += remove_loose(tissue);
   }
 
-  /// Tissue that was heated shrinks.
+  /// Shrinks heated tissue.
   void cook(const Needle& needle) {
     BrickTissue& tissue = state_.tissue;
     const double reach = kNeedleMm + specimen_.reach_mm + kCookedMm;
@@ -299,7 +298,7 @@ class Cutting {
       }
   }
 
-  /// The needle is out: tissue comes to rest while it waits for the photograph.
+  /// Lets the tissue come to rest, the needle out, in the time until the photograph.
   void settle(const Monitor& monitor) {
     for (const double step_s : {1.0, 3.0, 10.0, kPhotographS - 14.0}) {
       const float gain =

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kPlatformKpaMm = 20.0;  // pressure per depth
 constexpr double kMostDamping = 1.9;     // below 2, at which an iteration keeps no velocity
-constexpr int kRenewed = 20;             // iterations between two bounds of the masses
-constexpr int kLeastIterations = 20;     // before the residual counts
+constexpr int kRenewed = 20;             // iterations between two updates of the masses
+constexpr int kLeastIterations = 20;     // before the residual is tested
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void add_platform(BrickTissue& tissue, Platform& platform) {
     if (platform.is_down[n] == 0) platform.anchor_mm[n] = p.head<2>();
     platform.is_down[n] = 1;
     const Vec2 way = p.head<2>() - platform.anchor_mm[n];
-    const double most = platform.friction * push / stiffness;  // mm that the spring may be drawn
+    const double most = platform.friction * push / stiffness;  // greatest elongation of the spring, mm
     const double drawn = way.norm();
     Vec2 held = way;
     if (drawn > most) {

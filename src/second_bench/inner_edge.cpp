@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kPixelMm = 0.1;
 constexpr double kAroundMm = 16.0;  // beyond the tumour's edge
-constexpr double kSlitMm = 0.6;     // jump of the place at rest from one pixel to the next: a kerf that has shut
-constexpr double kBridgeMm = 1.0;   // narrower skin is no skin
+constexpr double kSlitMm = 0.6;     // jump of the place at rest between neighbouring pixels that shows a closed-up kerf
+constexpr double kBridgeMm = 1.0;   // narrower strips of skin do not count
 constexpr int kRays = 360;
-constexpr double kSmoothDeg = 4.0;  // over which a person draws straight on
+constexpr double kSmoothDeg = 4.0;  // to either side: a person draws straight on over it
 
-/// Where the skin can be followed from one pixel to the next.
+/// Returns the pixels of skin that continues to its neighbours: no kerf, open or closed up, lies between.
 Raster whole_skin(const SeenTissue& seen, const RasterGrid& grid) {
   const DepthBuffer view = depth_buffer(grid, seen.vertices, seen.triangles);
   Points rest(grid.pixel_count(), Vec3::Constant(1e9));

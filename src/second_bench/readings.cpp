@@ -15,7 +15,7 @@ constexpr std::uint64_t kReadingStream = 0x94d049bbULL;
 constexpr double kHandWaveMm = 8.0;
 constexpr double kForceNoise = 0.05;  // standard deviation of one reading, relative
 
-/// The specimen as it lay in the scanner, and as its segmentation will show it.
+/// The specimen's shape in the scanner, with the error of its segmentation.
 TongueShape scanned_shape(const TongueShape& shape, const Specimen& specimen) {
   TongueShape scanned = shape;
   scanned.length_mm += 2.0 * specimen.segmentation_mm;
@@ -24,7 +24,7 @@ TongueShape scanned_shape(const TongueShape& shape, const Specimen& specimen) {
   return scanned;
 }
 
-/// What a lens with radial distortion makes of points, seen from the camera at the origin.
+/// Distorts points as a lens with radial distortion does, seen from the camera at the origin.
 void distort(Points& points, const Mat4& T_camera_specimen, double coefficient) {
   const Mat4 back = T_camera_specimen.inverse();
   for (Vec3& p : points) {

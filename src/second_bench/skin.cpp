@@ -5,7 +5,7 @@
 namespace incise::second_bench {
 namespace {
 
-/// The highest voxel that is left of a column.
+/// The highest remaining voxel of a column.
 struct Top {
   int piece = -1;              // none: no tissue is left
   std::array<int, 3> place{};  // of its brick
@@ -30,8 +30,8 @@ Top find_top(const BodyState& state, int i, int j, const TissueSpan& span) {
   return {};
 }
 
-/// Draws what is left: skin as a square for each uncut column, joined where columns are neighbours, so that it ends where
-/// its last voxel does; walls and floor of a kerf as triangles between the middles of columns.
+/// Draws the remaining tissue: the skin as a square for each uncut column, joined between neighbouring columns, so it
+/// ends exactly at its last voxel; walls and bottom of a kerf as triangles between the middles of columns.
 class Surface {
  public:
   explicit Surface(const BodyState& state) : state_(state), nx_(state.columns_x()), ny_(state.columns_y()) {
@@ -80,11 +80,11 @@ class Surface {
     rest.head<2>() += (from_middle - Vec2::Constant(0.5)).cwiseProduct(voxel.head<2>());
     if (!top.is_uncut) return rest;
     const auto there = span_at(state_.shape, rest.x(), rest.y());
-    if (there) rest.z() = there->high_mm;  // else the shape ends within the voxel, whose own top is as high
+    if (there) rest.z() = there->high_mm;  // otherwise the shape ends within the voxel, and the voxel's top counts
     return rest;
   }
 
-  /// Gives the uncut columns round a corner one vertex for each set of them that are neighbours there.
+  /// Gives each set of neighbouring uncut columns round a corner one vertex.
   void join_at(int i, int j) {
     struct Member {
       std::size_t column = 0;
@@ -98,7 +98,7 @@ class Surface {
       if (a < 0 || b < 0 || a >= nx_ || b >= ny_) continue;
       ring[n] = {at(a, b), (n + 2) % 4, tops_[at(a, b)].is_uncut};
     }
-    std::size_t first = 0;  // of a set: its forerunner on the ring is none, or all four are one set
+    std::size_t first = 0;  // start of a set: the member before it is not uncut; 4: all four are one set
     while (first < 4 && ring[(first + 3) % 4].is_uncut) ++first;
     for (std::size_t n = 0; n < 4;) {
       std::vector<Member> set;

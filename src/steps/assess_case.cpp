@@ -12,7 +12,7 @@
 namespace incise::steps {
 namespace {
 
-/// What the registration's file says of how well the specimen was found. @returns what is held against it.
+/// Reads from the registration's file how well the specimen was found. @returns the objections to the registration.
 Verdict read_specimens_registration(const std::filesystem::path& file, AssessmentRequest& request) {
   const RegistrationRecord record = read_registration(file);
   if (!record.is_converged)
@@ -27,7 +27,7 @@ Verdict read_specimens_registration(const std::filesystem::path& file, Assessmen
   return verdict_of(record, file);
 }
 
-/// What is foreseen is a ring that is corrected pass by pass.
+/// Only a ring that is corrected pass by pass can be assessed.
 void require_ring_by_default_method(const CaseFile& file) {
   const Case& settings = file.settings;
   if (settings.plan.kind != PlanKind::Ring)

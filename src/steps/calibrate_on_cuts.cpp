@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// @throws DataError for one that found no transform, or does not say how well it fits.
+/// @throws DataError for a registration that found no transform or does not say how well it fits.
 RegistrationQuality registration_of(const std::filesystem::path& file, Monitor& monitor) {
   const RegistrationRecord record = read_registration(file);
   if (!record.T_target_source) throw DataError(file, "T_target_source", "null", "a registration that was found");
@@ -32,7 +32,7 @@ RegistrationQuality registration_of(const std::filesystem::path& file, Monitor& 
   return {*record.rmse_mm, record.scale};
 }
 
-/// Names tell specimens apart in the table: files of one name get their number.
+/// Makes the names of specimens differ: a name that is taken gets the specimen's number.
 void make_names_differ(std::vector<CalibrationSubject>& subjects) {
   std::set<std::string> seen;
   for (std::size_t i = 0; i < subjects.size(); ++i) {
@@ -41,7 +41,7 @@ void make_names_differ(std::vector<CalibrationSubject>& subjects) {
   }
 }
 
-/// Everything that can be looked at before anything is written or computed.
+/// Reads and checks everything that can be checked before anything is written or computed.
 std::vector<CaseFile> read_inputs(const CalibrateRequest& request, std::vector<CalibrationSubject>& subjects,
                                   Monitor& monitor) {
   std::vector<CaseFile> files;
@@ -68,7 +68,7 @@ std::string settings_of_all(const std::vector<CaseFile>& cases) {
   return Json{{"cases", json}}.dump();
 }
 
-/// Long lists stay in the file.
+/// Returns the calibration without its long lists, which only the file has.
 Json summary_of_calibration(const Calibration& calibration) {
   Json json = to_json(calibration);
   json.erase("fitted");
@@ -83,7 +83,7 @@ Json summary_of_calibration(const Calibration& calibration) {
   return json;
 }
 
-/// The table's rows lie speed by speed, as they were asked for; the map is in ascending order.
+/// The rows of the table are in the order of the request; those of the map ascend.
 ScoreGrid grid_of(const Calibration& calibration) {
   ScoreGrid grid;
   grid.is_virtual = calibration.is_virtual;

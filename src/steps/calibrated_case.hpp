@@ -7,7 +7,7 @@
 
 namespace incise::steps {
 
-/// Runs what needs the tissues of a calibration; what is kept of it when it is interrupted is said.
+/// Runs work that needs the tissues of a calibration. If it is interrupted, the error says what is kept.
 template <class Work>
 auto with_tissues(CaseRun& run, Work work) -> decltype(work()) {
   try {
@@ -19,19 +19,19 @@ auto with_tissues(CaseRun& run, Work work) -> decltype(work()) {
   }
 }
 
-/// The case's part of what is asked.
+/// Returns the scenarios' settings with the measured pull and the seed.
 [[nodiscard]] ScenarioRequest scenario_request(const CalibratedRequest& request, const StepContext& context);
 
-/// The tissues and the bias of a calibration are those of one law of cutting.
+/// Requires one rule of cutting: the tissues and the bias of a calibration hold only for the rule of its cuts.
 /// @throws CaseError where the case cuts by another rule than the calibration did.
 void require_rule_of(const CalibrationInput& calibration, const CaseFile& file);
 
-/// What photographs say of a ring holds for a cut along the planned path.
+/// Requires the planned path: the photographs of a ring apply only to a cut along it.
 /// @throws CaseError for a case that gives a path of its own.
 void require_planned_path(const CaseFile& file);
 
-/// What is to be said where the case cuts with another simulated tool than the calibration chose: that is seldom meant.
-/// Empty: it is the same.
+/// Returns a warning if the case cuts with another simulated tool than the calibration chose, which is seldom intended.
+/// Empty: the tool is the same, or the calibration chose none.
 [[nodiscard]] std::string other_tool(const CutSettings& cut, const Calibration& calibration);
 
 }  // namespace incise::steps

@@ -55,7 +55,7 @@ double middle(const Json& document, const std::string& key, const std::filesyste
 
 void require_known(const Json& document, const std::vector<std::string>& keys, const std::filesystem::path& file,
                    const std::string& at) {
-  if (!document.is_object()) return;  // told by whoever reads it
+  if (!document.is_object()) return;  // reported by its reader
   for (const auto& [key, value] : document.items()) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     throw DataError(file, at + "/" + key, "an unknown key", fmt::format("one of {}", fmt::join(keys, ", ")),

@@ -30,7 +30,7 @@ void require_extent(const Points& points, const std::filesystem::path& path) {
     }
     box.extend(points[i]);
   }
-  if (points.empty()) return;  // told by whoever counts them
+  if (points.empty()) return;  // reported where points are counted
   if (box.sizes().maxCoeff() > kWidestMm) {
     throw DataError(path, "points", fmt::format("a cloud {:.4g} wide", box.sizes().maxCoeff()),
                     fmt::format("millimetres of tissue, at most {:.0f}", kWidestMm), "Is the unit mm?");
@@ -38,7 +38,7 @@ void require_extent(const Points& points, const std::filesystem::path& path) {
 }
 
 void require_surface(const Points& points, const std::filesystem::path& path) {
-  constexpr double kLeastShare = 1e-3;  // of the width: what is narrower is a line
+  constexpr double kLeastShare = 1e-3;  // of the width: narrower is a line
   require_extent(points, path);
   if (points.empty()) return;
   Vec3 mean = Vec3::Zero();

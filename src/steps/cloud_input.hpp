@@ -6,12 +6,11 @@
 
 namespace incise::steps {
 
-/// The points of a surface or cloud file, with its normals where it has them. @throws DataError, also for fewer than
+/// Reads the points of a surface or cloud file, with its normals if it has them. @throws DataError, also for fewer than
 /// `fewest` points.
 [[nodiscard]] PointCloud read_points(const std::filesystem::path& path, std::size_t fewest);
 
-/// Refuses points of which one lies so far from the others, or from the origin, that they cannot be millimetres of
-/// tissue.
+/// Refuses points so far from each other, or from the origin, that they cannot be millimetres of tissue.
 /// @throws DataError with what was found
 void require_extent(const Points& points, const std::filesystem::path& path);
 

@@ -48,7 +48,8 @@ std::vector<MeasuredSpecimen> measured(const std::vector<EvaluationFile>& files)
   return specimens;
 }
 
-/// Names tell specimens apart in tables and figures: files of one name get their number within the side.
+/// Makes the names of specimens differ in tables and figures: files with the same name get their number within the
+/// side.
 void tell_apart(std::vector<EvaluationFile>& files) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::string name = files[i].specimen.name;
@@ -71,7 +72,7 @@ std::vector<ErrorSeries> series_of(const ComparedFiles& files) {
   return series;
 }
 
-/// Nothing where targets differ: errors of one target are close to the tumour where those of another are not.
+/// Absent where targets differ: the same error may be close to the tumour for one target, and not for another.
 std::optional<double> common_target_mm(const ComparedFiles& files) {
   const double first = files.before.front().target_mm;
   for (const auto* side : {&files.before, &files.after})
@@ -80,7 +81,7 @@ std::optional<double> common_target_mm(const ComparedFiles& files) {
   return first;
 }
 
-/// Of the first incision that has them; none where targets differ.
+/// The borders of the first incision that states them, else the defaults; absent where targets differ.
 std::optional<ZoneBorders> borders_of(const ComparedFiles& files) {
   if (!common_target_mm(files)) return std::nullopt;
   for (const auto* side : {&files.before, &files.after}) {
@@ -106,14 +107,14 @@ void write_figures(const std::filesystem::path& folder, const ComparedFiles& fil
   if (has_clock) write_both(folder, "error_by_clock", error_by_clock_svg(series, zones));
 }
 
-/// Compares the specimens that have errors. Those on which no incision was found stay in the table, are named under
-/// `left_out` and make no mean better. A side without any errors has a verdict, `too_few`, and no test.
+/// Compares the specimens that have errors. Specimens on which no incision was found stay in the table, are named under
+/// `left_out`, and count in no mean. A side without any errors has a verdict, `too_few`, and no test.
 CutComparison compared(ComparedFiles& files, const ComparisonSettings& settings) {
   tell_apart(files.before);
   tell_apart(files.after);
   const std::vector<MeasuredSpecimen> before = measured(files.before);
   const std::vector<MeasuredSpecimen> after = measured(files.after);
-  // Of a pair, both or neither can be tested; which to leave out is the person's choice.
+  // A pair can be tested only if both cuts have errors; the user decides which pair to leave out.
   const bool is_whole = before.size() == files.before.size() && after.size() == files.after.size();
   if (settings.is_paired && !is_whole) {
     throw DataError("--paired", "", "an evaluation without an incision", "errors in every file",
@@ -152,7 +153,7 @@ void write_comparison(const CompareRequest& request, const ComparedFiles& files,
   write_atomically(target.path() / "tests.tex", latex_text(tests));
   write_figures(target.path(), files);
   Manifest manifest = manifest_of(context.run, json_text(to_json(request.settings)), inputs, context.wall_s());
-  manifest.specimen_id.clear();  // it is of several
+  manifest.specimen_id.clear();  // a comparison has several
   write_manifest(target.path(), manifest);
   target.commit();
 }
@@ -163,8 +164,8 @@ std::vector<EvaluationFile> read_all(const std::vector<std::filesystem::path>& p
   return files;
 }
 
-/// Like is compared with like: the same line of the cut, against the same target. Where specimens are paired, each may
-/// have a target of its own, which its two cuts share.
+/// Requires the same line of the cut and the same target everywhere. Where specimens are paired, each may have its own
+/// target, which its two cuts share.
 void require_alike(const CompareRequest& request, const ComparedFiles& files) {
   INCISE_REQUIRE(
       !request.settings.is_paired || request.before.size() == request.after.size(),

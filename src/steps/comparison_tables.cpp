@@ -9,7 +9,7 @@ std::string number(const std::optional<double>& value, int places) {
   return value ? fmt::format("{:.{}f}", *value, places) : "-";
 }
 
-/// Small p-values keep their size.
+/// Small p-values are written with an exponent.
 std::string p_text(const std::optional<double>& p) {
   if (!p) return "-";
   return *p < 1e-4 ? fmt::format("{:.1e}", *p) : fmt::format("{:.4f}", *p);

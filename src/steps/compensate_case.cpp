@@ -9,7 +9,7 @@
 namespace incise::steps {
 namespace {
 
-/// What was left of the mean error per pass; where there was one pass: after over before.
+/// Fraction of the mean error that remains after a pass; of a single pass: after over before.
 nlohmann::ordered_json contraction_of(const Study& study) {
   if (!study.correction) return nullptr;
   if (study.correction->iteration) {
@@ -55,7 +55,7 @@ void require_default_method(const CaseFile& file) {
   require_planned_path(file);
 }
 
-/// The path of least expected error; what is said of it.
+/// Computes and writes the robust path. @returns its summary.
 nlohmann::ordered_json add_robust_path(const RobustRequest& chosen, CaseRun& run, const Study& study,
                                        const StepContext& context) {
   const CalibrationInput& calibration = chosen.calibration;
@@ -177,7 +177,7 @@ StepResult run_stages(const CaseRequest& request, const StepContext& context) {
   result.json["folder"] = run.folder.folder(product).string();
   result.json["stages"] = to_json(study.stages);
   bool is_refused = until == Stage::Simulate && study.verdict.status() == VerdictStatus::Refused;
-  if (until == Stage::Compensate && study.correction) {  // what is known against a path that nothing was cut along
+  if (until == Stage::Compensate && study.correction) {  // objections to a path that was not cut
     const Verdict verdict = read_path_verdict(run.folder.folder(product) / "path.json");
     result.json["verdict"] = to_json(verdict);
     is_refused = verdict.status() == VerdictStatus::Refused;

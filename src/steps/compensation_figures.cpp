@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What compensate.json says, if it is of a correction with passes.
+/// Returns compensate.json if it is of a correction with passes, else null.
 Json correction_record(const std::filesystem::path& root) {
   const std::filesystem::path file = root / "correction" / "compensate.json";
   if (!std::filesystem::exists(file)) return nullptr;

@@ -55,7 +55,7 @@ void write_figure(const std::filesystem::path& path, const std::string& svg) {
   write_atomically(path, bytes);
 }
 
-/// Refuses what `evaluate` would measure without a sense: each contour by its own name.
+/// Refuses a contour whose measures would be meaningless, and names it.
 void require_usable(const Contour& contour, const std::string& what, double largest_mm, const Vec3& approach,
                     const std::filesystem::path& file) {
   if (const auto problem = size_problem(contour, what, largest_mm)) {
@@ -82,8 +82,7 @@ nlohmann::ordered_json line_json(const MarkedLine& line) {
   return json;
 }
 
-/// What was measured, point by point and with the edge that it was measured against, for those who compare it place by
-/// place.
+/// Adds the measured points, and the edge that they were measured against, for comparisons place by place.
 void add_contours(nlohmann::ordered_json& json, const Evaluation& evaluation, const Contour& tumor_edge,
                   const Vec3& approach) {
   json["points"] = points_json(evaluation);
@@ -100,8 +99,8 @@ struct Measured {
   FoundPixels pixels;  ///< of a photograph
 };
 
-/// What `measure` finds, in JSON too. The settings are known to be valid here, so what it refuses is the fault of the
-/// contours in `file`.
+/// Returns the result of `measure`, also as JSON. The settings are valid here, so a refusal is due to the contours in
+/// `file`.
 template <typename Measure>
 Measured measured(const std::filesystem::path& file, const Measure& measure) {
   try {
@@ -121,8 +120,8 @@ nlohmann::ordered_json marks_json(const std::vector<PhotoMark>& marks) {
   return json;
 }
 
-/// Red in the tumour may be blood or a cut that went astray, green beside its edge a part of it: no number shows such
-/// marks, so a warning does.
+/// Red in the tumour may be blood or a cut that went astray, green beside its edge a part of it. No measure shows such
+/// marks, so a warning reports them.
 void tell(const std::vector<PhotoMark>& marks, const char* mark, const char* place, const char* question,
           std::vector<std::string>& warnings) {
   if (marks.empty()) return;
@@ -170,7 +169,7 @@ void require_one_source(const EvaluateRequest& request) {
   if (!request.figure.empty()) require_figure_file(request.figure);
 }
 
-/// The request with what it leaves open. @throws CaseError for parts that do not go together.
+/// Completes a request with its defaults. @throws CaseError for parts that do not go together.
 EvaluateRequest completed(EvaluateRequest request) {
   require_one_source(request);
   request.settings.contour =
@@ -218,7 +217,7 @@ Measured from_photo(const EvaluateRequest& request) {
   return result;
 }
 
-/// An open cut against the line that it was to follow.
+/// Measures an open cut against the line that it should follow.
 Measured from_line(const EvaluateRequest& request) {
   const EvaluationSettings& settings = request.settings;
   const Contour incision = read_contour(request.incision, false);
@@ -245,7 +244,7 @@ Measured from_files(const EvaluateRequest& request) {
   return result;
 }
 
-/// @throws CaseError where the option says another specimen than the files.
+/// @throws CaseError if the option names another specimen than the files.
 std::string specimen_of(const EvaluateRequest& request, const std::vector<std::filesystem::path>& inputs) {
   std::string stated = common_specimen_id(inputs);
   if (request.specimen_id.empty()) return stated;

@@ -24,7 +24,7 @@
 namespace incise::steps {
 namespace {
 
-/// The checks need more than the transform.
+/// Returns the numbers of a registration that the checks need. @throws DataError if one is missing.
 RegistrationSummary registration_summary(const RegistrationRecord& record, const std::filesystem::path& file) {
   const auto require = [&](bool is_there, const char* key) {
     if (!is_there) throw DataError(file, key, "nothing", "what `incise register` writes");
@@ -53,8 +53,8 @@ void require_of_case(const ToolPath& path, const ExportRequest& request, Monitor
                   "Two scans of one specimen get one specimen_id in their cases");
 }
 
-/// Of the simulated cut that verifies the path, and of the registration. @param kind_in_file, kind  of the path as it
-/// was read, and as it is exported
+/// Returns the verdict of the simulated cut that verifies the path, and of the registration. @param kind_in_file, kind
+/// of the path as read, and as exported
 Verdict verdict_along(const ExportRequest& request, PathKind kind_in_file, PathKind kind,
                       const std::optional<RegistrationRecord>& registration) {
   Verdict verdict = read_path_verdict(request.path);
@@ -95,8 +95,8 @@ void require_ending(const std::filesystem::path& output, ProgramForm form) {
     refuse(".script");
 }
 
-/// What makes a mark one: it follows the edge, hardly scratches it, and slowly. Without these it is a cut without a
-/// verdict.
+/// Refuses to override the checks that make a path a mark: it follows the edge, slowly, and hardly scratches it.
+/// Without them it is a cut without a verdict.
 void require_a_mark(const std::vector<std::string>& overrides) {
   for (const std::string& name : overrides) {
     if (name != "depth" && name != "speed_max" && name != "edge_distance") continue;
@@ -127,7 +127,7 @@ RobotProgram program_of(const ToolPath& path, const ExportRequest& request) {
   }
 }
 
-/// What nobody will look at, and what will be looked at less strictly than by default: nothing of it is silent.
+/// Warns of every check that is skipped or looser than by default.
 void warn_of_less(const ExportRequest& a, const CheckInputs& inputs, const ToolPath& path, Monitor& monitor) {
   const auto missing = [&](bool is_given, const char* option, const char* checks) {
     if (is_given) return;
@@ -236,7 +236,7 @@ StepResult export_program(const ExportRequest& given, const StepContext& context
   require_of_case(path, request, context.monitor);
   if (path.kind == PathKind::Mark) {
     require_a_mark(request.overrides);
-    // A case whose cut is open says nothing of the mark of its tumour's edge.
+    // A case with an open cut says nothing about the mark of its tumour's edge.
     if (!request.case_file.empty()) request.is_open = false;
   }
   if (request.is_open && path.is_closed) {

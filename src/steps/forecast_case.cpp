@@ -13,7 +13,7 @@ namespace {
 
 using ForecastJson = nlohmann::ordered_json;
 
-/// One of both ways to forecast, and what the case has to say to correct by it.
+/// Returns one forecast, with or without simulation, and the spreads of its model.
 ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast& forecast) {
   ForecastJson json = to_json(forecast);
   json["converged"] = forecaster.is_converged();

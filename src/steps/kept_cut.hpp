@@ -8,8 +8,8 @@
 
 namespace incise::steps {
 
-/// A simulated cut as its folder keeps it: incision.json, and the errors of both its lines, measured again. Frames, log
-/// and final state are left out. @throws DataError for a damaged file.
+/// Reads a simulated cut from its folder: incision.json, and the errors of both its lines, which are measured again.
+/// Frames, log and final state are left out. @throws DataError for a damaged file.
 [[nodiscard]] SimulatedCut read_kept_cut(const std::filesystem::path& folder, const Case& settings,
                                          const ToolPath& plan);
 

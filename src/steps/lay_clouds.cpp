@@ -50,7 +50,7 @@ nlohmann::ordered_json settings_json(const RegisterRequest& request) {
   return json;
 }
 
-/// The source laid on the target, and bent to it where that is asked for.
+/// The source moved onto the target, and bent to it if requested.
 struct Laid {
   PointCloud source;  // in the target's frame
   nlohmann::ordered_json nonrigid;
@@ -66,12 +66,12 @@ Laid laid_source(const PointCloud& source, const PointCloud& target, const Regis
   monitor.progress("bending", 0.0);
   NonrigidSettings settings = *request.nonrigid;
   settings.outlier_weight = request.settings.outlier_weight;
-  settings.first_sigma = 0.1;  // the clouds lie on each other but for what bending can do
+  settings.first_sigma = 0.1;  // the clouds already coincide but for the bending
   const NonrigidDrift bent = nonrigid_drift(laid.source.points, target.points, settings, workers, monitor);
   if (bent.outcome == DriftOutcome::Cancelled) throw Cancelled("register: stopped while bending");
   monitor.progress("bending", 1.0);
   laid.source.points = bent.moved_mm;
-  laid.source.normals.clear();  // they have turned with the surface
+  laid.source.normals.clear();  // outdated: the surface has turned
   laid.nonrigid = {
       {"outcome", to_string(bent.outcome)}, {"sigma_mm", bent.sigma_mm}, {"largest_move_mm", bent.largest_move_mm},
       {"iterations", bent.iterations},      {"rank", bent.rank},         {"target_fraction", bent.matched_share}};

@@ -33,7 +33,7 @@ SizingField sizing_of(const MeshRequest& request, const PlannedCut& cut, double 
   return SizingField::around_cut(cut, sizes);
 }
 
-/// Whatever the mesher requires of its input, it came from the file and the lengths.
+/// Meshes the input. A violated precondition of the mesher is due to the file and the lengths: a DataError.
 MeshingResult meshed(const MeshRequest& request, const PlannedCut& cut, const MeshingSettings& settings,
                      Monitor& monitor) {
   const std::filesystem::path& input = request.input;

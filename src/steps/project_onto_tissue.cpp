@@ -22,10 +22,10 @@
 namespace incise::steps {
 namespace {
 
-// Largest shift of the tip by an uncertain scale that needs no warning; at the clinical cut-off the path is refused.
+// Largest shift of the tip by an uncertain scale without a warning; above the clinical cut-off the path is refused.
 constexpr double kTipMm = 0.3;
 
-/// What `register` wrote. A search that did not end well is no ground for moving a robot.
+/// Reads a registration by which a robot may be moved: one that converged.
 RegistrationRecord trusted_registration(const std::filesystem::path& file, Monitor& monitor) {
   RegistrationRecord record = read_registration(file);
   if (!record.is_converged.value_or(false) || !record.T_target_source) {
@@ -38,7 +38,7 @@ RegistrationRecord trusted_registration(const std::filesystem::path& file, Monit
   }
   require_clouds_unchanged(record, file, monitor);
   const double scale = record.scale * record.camera_scale;
-  const CheckSettings checks;  // what export will hold it to
+  const CheckSettings checks;  // limits that export will apply
   if (!(scale > checks.min_scale && scale < checks.max_scale)) {
     monitor.message(Severity::Warning,
                     fmt::format("{}: the scale is {:.4f}; both sensors are metric, so that {} to {} is expected",
@@ -51,7 +51,7 @@ const char* metric_of(const ProjectRequest& request) {
   return request.takes_camera_size ? "camera" : "ct";
 }
 
-/// Simulation and measured tissue in the robot's frame, and what became of the scale between them.
+/// Simulation and measured tissue in the robot's frame, and a summary of the scale between them.
 struct Placement {
   Mat4 T_robot_sim;
   TriMesh measured;
@@ -68,7 +68,7 @@ Vec3 middle_of(const ToolPath& path, const Mat4& T) {
   return (T * (sum / static_cast<double>(path.waypoints.size())).homogeneous()).head<3>();
 }
 
-/// Takes the fitted scale out of the camera's lengths. The fixed point is the user's, else the camera's origin, else
+/// Removes the fitted scale from the camera's lengths. The fixed point is the user's, else the camera's origin, else
 /// the middle of the path.
 void take_true_size(Placement& placement, const ToolPath& path, const RegistrationRecord& registration,
                     const ProjectRequest& request, const std::optional<Vec3>& camera_mm, Monitor& monitor) {
@@ -153,7 +153,7 @@ ProjectedPath laid_down(const ToolPath& path, const Placement& placement, const 
   }
 }
 
-/// What `export` would refuse, told where the path is made.
+/// Warns, where the path is made, of what `export` would refuse.
 void warn_of_unsafe(const ToolPath& path, nlohmann::ordered_json& result, Monitor& monitor) {
   const CheckSettings limits;
   result["max_step_mm"] = nullptr;
@@ -201,7 +201,7 @@ nlohmann::ordered_json settings_json(const ProjectRequest& request) {
           {"max_shift_mm", s.max_shift_mm}};
 }
 
-/// What was not simulated as it is laid down.
+/// Adds a caution for each difference between the projected path and its simulated cut.
 void hold_changes(Verdict& verdict, const RegistrationRecord& registration, const ProjectRequest& request,
                   const ProjectSettings& settings) {
   constexpr double kSameSize = 1e-4;  // relative: 0.01 mm of a path of 100 mm
@@ -236,7 +236,7 @@ Verdict verdict_along(const RegistrationRecord& registration, const ProjectReque
   return verdict;
 }
 
-/// A folder with path, tissue and manifest, or the path as one file with its manifest beside it.
+/// Writes a folder with path, tissue and manifest, or the path as one file with its manifest beside it.
 void write(const std::filesystem::path& output, const ProjectedPath& projected, const Verdict& verdict,
            const Placement& placement, const Manifest& manifest, nlohmann::ordered_json& result) {
   if (output.extension() == ".json") {

@@ -17,7 +17,7 @@ bool is_in_cut(const ReplaySample& sample) {
   return sample.phase == ProgramPhase::Cut || sample.phase == ProgramPhase::Overlap;
 }
 
-/// What the program's own header says of its verdict.
+/// Copies what the program's own header says about its verdict.
 void add_header(const ProgramHeader& header, nlohmann::ordered_json& json) {
   for (const char* key : {"verdict", "reason", "accepted", "override", "not_checked"}) {
     json[key] = nlohmann::ordered_json::array();
@@ -51,7 +51,7 @@ Replay played(const WrittenProgram& program, const PlayerSettings& settings, con
   }
 }
 
-/// How it ended, where that is not well.
+/// Says how a replay ended that is not acceptable.
 std::string warning_of(const Replay& replay, const std::filesystem::path& program) {
   const bool is_stopped = replay.outcome == ReplayOutcome::Unreachable || replay.outcome == ReplayOutcome::Jump ||
                           replay.outcome == ReplayOutcome::BlendsOverlap ||
@@ -104,7 +104,7 @@ void write_replay_figure(const std::filesystem::path& folder, const Replay& repl
     picture.deviation_mm.push_back(s.deviation_mm);
   }
   if (picture.tip_mm.size() < 2) return;
-  // The straight ways down and up are seen end on.
+  // Leaves out the straight ways down and up, which are seen end on.
   if (replay.intended_mm.size() > 2)
     picture.intended_mm.assign(replay.intended_mm.begin() + 1, replay.intended_mm.end() - 1);
   write_atomically(folder / "replay.svg", replay_figure_svg(picture));

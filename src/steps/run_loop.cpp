@@ -11,7 +11,7 @@
 namespace incise::steps {
 namespace {
 
-/// Hands everything on to another monitor, and keeps the warnings for the report.
+/// Passes everything to another monitor, and keeps the warnings for the report.
 class WarningsKept : public Monitor {
  public:
   explicit WarningsKept(Monitor& outer) : outer_(outer) {}

@@ -90,7 +90,7 @@ CtVolume crop(const CtVolume& ct, const VolumeGrid& around) {
   return part;
 }
 
-/// That of the run; of a folder that a single stage filled, that of its last cut.
+/// Adds the verdict of the run, or, for a folder that a single stage filled, of its last cut.
 void add_verdict(const fs::path& root, const Json& study, ReportData& data) {
   if (study.contains("verdict")) {
     data.verdict = from_json<Verdict>(study.at("verdict"), root / "study.json", "/verdict");
@@ -104,7 +104,7 @@ void add_verdict(const fs::path& root, const Json& study, ReportData& data) {
   }
 }
 
-/// Why a study went no further than the stretch.
+/// Adds the reason why a run went no further than the stretch.
 void add_stretch(const fs::path& root, ReportData& data) {
   const fs::path file = root / "stretched" / "deform.json";
   if (!fs::exists(file)) return;
@@ -119,7 +119,7 @@ void add_stretch(const fs::path& root, ReportData& data) {
 void add_ct(const fs::path& root, const CaseFile& file, Monitor& monitor, ReportData& data) {
   const fs::path labels = root / "labels" / "labels.nrrd";
   if (!fs::exists(labels) || file.inputs.ct_volume.empty()) return;
-  Monitor quiet;  // what the reader notices was said when the study ran
+  Monitor quiet;  // the run has already reported the reader's messages
   const ReadVolume read = read_ct(file.inputs.ct_volume, file.ct_reading, quiet);
   const LabelVolume label = read_labels(labels);
   data.ct.ct = crop(read.volume, label.grid);
@@ -144,7 +144,7 @@ TriMesh sheet(const Points& upper, const Points& lower, bool is_closed) {
   return mesh;
 }
 
-/// Where points of the stretched tissue lie at rest. One beyond the tissue moves with what is nearest to it.
+/// Returns the positions at rest of points on the stretched tissue. A point outside moves with the nearest tissue.
 Points at_rest(Points points, const TetMesh& mesh, std::span<const Vec3> stretched) {
   constexpr double kReachMm = 1e3;
   const TetLocator locator(mesh, stretched);
@@ -175,7 +175,7 @@ void add_plan_to_ct(const fs::path& root, const CaseFile& file, const TetMesh& m
       data.ct.tumor.vertices = at_rest(std::move(data.ct.tumor.vertices), mesh, stretched);
     data.ct.tumor_is_surface = true;
   } else if (!plan.tumor_edge.points.empty()) {
-    constexpr double kBandMm = 1.0;  // an edge has no depth: a mark that is seen where it meets a slice
+    constexpr double kBandMm = 1.0;  // an edge has no depth: a band is visible where it meets a slice
     Points lower = plan.tumor_edge.points;
     for (Vec3& p : lower) p += kBandMm * file.settings.plan.approach.normalized();
     data.ct.tumor = rest_sheet(plan.tumor_edge.points, lower, true);
@@ -340,7 +340,7 @@ void add_warning(std::string text, ReportData& data) {
   data.notices.push_back({Severity::Warning, std::move(text)});
 }
 
-/// Findings beside the run's verdict, and what holds for every run.
+/// Adds the findings beside the run's verdict, and the caveats of every run.
 void add_findings(const CaseFile& file, const Json& study, ReportData& data) {
   const Json program = study.value("program", Json::object());
   if (program.contains("reason"))
@@ -517,7 +517,7 @@ void add_layers(const CutFolder& cut, const Json& json, ReportData& data) {
   }
 }
 
-/// The kerf as a body of its own, with the paths.
+/// Adds the kerf as a separate body, with the paths.
 void add_kerf_picture(const fs::path& folder, const CutFolder& cut, const std::vector<ReportLine>& lines,
                       ReportData& data) {
   if (!fs::exists(folder / "kerf.vtp")) return;

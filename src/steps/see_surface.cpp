@@ -42,8 +42,8 @@ TriMesh skin_of(const TetMesh& mesh, const std::filesystem::path& file) {
   return skin;
 }
 
-/// The skin of the case's stretched specimen, made or found beside the case as every verb does; the approach is the
-/// plan's.
+/// Returns the skin of the case's stretched specimen, made or found beside the case as for every verb. Sets `approach`
+/// to the plan's.
 TriMesh stretched_skin(const std::filesystem::path& case_path, const StepContext& context, Vec3& approach,
                        std::string& specimen_id) {
   CaseRun run(read_case_with_inputs(case_path), output_beside(case_path), {.until = Stage::Stretch}, context.run);
@@ -59,7 +59,7 @@ TriMesh stretched_skin(const std::filesystem::path& case_path, const StepContext
   return skin;
 }
 
-/// Refuses what no specimen is, and a sample so dense that nobody can want it: both would take all memory there is.
+/// Refuses a size that no specimen has, and a sample too dense to be intended: either would exhaust the memory.
 void require_sampleable(const TriMesh& skin, double spacing_mm, const std::filesystem::path& input) {
   constexpr double kMostPoints = 5e6;
   require_body_size(bounding_box(skin.vertices), input);
@@ -111,8 +111,8 @@ nlohmann::ordered_json cleaned(const PointCloud& raw, const SurfaceRequest& requ
           {"outliers", result.outliers}};
 }
 
-/// A camera's scale, from a plane whose height in the robot's frame is known, is taken out of its cloud: all lengths
-/// from the camera's origin, that to the plane too, are too long by the same factor.
+/// Removes a camera's scale from its cloud, by a plane whose height in the robot's frame is known: all lengths from the
+/// camera's origin, including the distance to the plane, are too long by the same factor.
 nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::ordered_json& planes,
                                         const SurfaceRequest& request, Monitor& monitor) {
   constexpr double kLargestTiltDeg = 3.0;
@@ -135,7 +135,7 @@ nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::order
                     fmt::format("{:.2f} mm and level, as T_robot_camera and --plane-z-mm say", true_mm),
                     "Another plane may be larger, or the camera's pose is not this one.");
   }
-  const CheckSettings checks;  // what export will hold it to
+  const CheckSettings checks;  // limits that export will apply
   if (!(scale > checks.min_scale && scale < checks.max_scale)) {
     monitor.message(Severity::Warning,
                     fmt::format("the camera's scale is {:.4f}; the camera is metric, so that {} to {} is expected: is "
@@ -146,7 +146,7 @@ nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::order
   return {{"camera_scale", scale}, {"plane_tilt_deg", tilt_deg}};
 }
 
-/// The cloud of whatever the input is, and what is said of it.
+/// Makes the cloud of any kind of input. @returns its summary.
 nlohmann::ordered_json cloud_of_input(const SurfaceRequest& request, const StepContext& context, PointCloud& cloud,
                                       std::string& specimen_id, bool& is_virtual) {
   const std::filesystem::path& input = request.input;

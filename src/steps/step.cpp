@@ -11,7 +11,7 @@
 namespace incise::steps {
 namespace {
 
-/// A result that is made of several specimens' files is of none.
+/// Returns the specimen id that the inputs state; empty if none does, or if they state different ones.
 std::string id_that_all_state(const std::vector<std::filesystem::path>& inputs) {
   std::string id;
   for (const std::filesystem::path& path : inputs) {

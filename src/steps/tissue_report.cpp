@@ -88,7 +88,7 @@ void add_on_tissue(const std::filesystem::path& registration, const std::filesys
        {"max_deviation_mm", "the same with the ways in and out, greatest", "mm"},
        {"duration_s", "duration", "s"},
        {"model", "model", ""}}};
-  // What a reader wants to know first: where the tip goes.
+  // The program comes first: readers want to know where the tip goes.
   if (!replay.empty()) {
     ReportPicture picture = picture_of(replay, "replay", "replay", kReplay);
     picture.title = "The program";

@@ -30,7 +30,7 @@ struct Scene {
   std::vector<std::filesystem::path> inputs;
 };
 
-/// PCL writes `obj_info num_cols W`; other programs leave it to the user.
+/// PCL writes `obj_info num_cols W`; with files of other programs, the user states it.
 int columns_of(const GridCloud& grid, const TrackRequest& request) {
   const int given = request.ply_width;
   if (grid.columns == 0 && given == 0) {
@@ -44,7 +44,7 @@ int columns_of(const GridCloud& grid, const TrackRequest& request) {
   return given > 0 ? given : grid.columns;
 }
 
-/// Rows of that many places: as many as the file says, all of them whole.
+/// Returns the number of rows. @throws DataError for an incomplete row, or for another number than the file states.
 int rows_of(const GridCloud& grid, int columns, const std::filesystem::path& file) {
   const std::size_t count = grid.places.size(), width = static_cast<std::size_t>(columns);
   if (columns < 2 || count % width != 0)
@@ -107,7 +107,8 @@ Scene scene_from_pictures(const TrackRequest& request) {
   return scene;
 }
 
-/// Median distance between neighbours in a row, in the middle of the picture: what one pixel covers of the tissue.
+/// Returns the median distance between neighbours in a row, in the middle of the picture: the width of a pixel on the
+/// tissue.
 double mm_per_pixel(const OrganizedCloud& cloud, const std::filesystem::path& name) {
   std::vector<double> steps;
   for (int v = cloud.height / 5; v < cloud.height - cloud.height / 5; v += 3) {
@@ -129,7 +130,7 @@ double mm_per_pixel(const OrganizedCloud& cloud, const std::filesystem::path& na
   return middle;
 }
 
-/// What has depth, with the pixels' colours.
+/// Returns the points with depth, with the pixels' colours.
 TriMesh colored_cloud(const Scene& scene) {
   TriMesh cloud;
   DataArray red{1, {}}, green{1, {}}, blue{1, {}};
@@ -185,14 +186,14 @@ ToolPath planned(const Tracked& tracked, const TrackRequest& request, const std:
   try {
     return plan_marked_path(tracked.lifted.contour, tracked.cloud.vertices, plan);
   } catch (const CaseError& error) {
-    // The case file that it names is not the user's.
+    // The error names a case file, but the user has none.
     throw DataError(name, error.problem());
   } catch (const InvalidArgument& error) {
     throw DataError(name, "", error);
   }
 }
 
-/// Why the mark is not what was asked for.
+/// Says why the mark is not the requested one.
 std::string complaint_about(const MarkedLine& line, const ColorPicture& picture, const TrackRequest& request) {
   if (request.is_open) return "the mark is a closed ring, an open line was requested";
   if (const std::optional<Vec2> end = end_at_rim_px(line, picture.width, picture.height)) {
@@ -203,7 +204,7 @@ std::string complaint_about(const MarkedLine& line, const ColorPicture& picture,
                      request.max_gap_mm);
 }
 
-/// A ring that was taken as closed although nobody knows that its gap is as short as was asked for.
+/// Warns of a ring that is taken as closed although its gap may be longer than allowed.
 std::optional<std::string> doubt_about(const MarkedLine& line, const TrackRequest& request) {
   const bool is_doubtful = line.is_closed && line.longest_unseen_mm > 0.0 &&
                            line.longest_unseen_mm + line.gap_tolerance_mm > request.max_gap_mm;
@@ -227,7 +228,7 @@ nlohmann::json settings_json(const TrackRequest& request) {
           {"axis", request.plan.axis_mode == AxisMode::SurfaceNormal ? "normal" : "approach"}};
 }
 
-/// A frame without a mark: its cloud alone.
+/// Writes a frame without a mark: only its cloud.
 StepResult see_frame(Scene scene, const TrackRequest& request, const StepContext& context) {
   Tracked seen;
   seen.cloud = colored_cloud(scene);

@@ -9,7 +9,7 @@
 namespace incise::steps {
 namespace {
 
-/// The held specimen: on the case's own mesh, or on the one that its run makes of the CT.
+/// Returns the held specimen: on the case's own mesh, or on the mesh that its run makes from the CT.
 std::shared_ptr<const TissueModel> specimen_of(const CaseFile& file, const StepContext& context) {
   if (!file.inputs.specimen_mesh.empty()) {
     TetMesh mesh = read_specimen_mesh(file, context.monitor);

@@ -14,9 +14,9 @@ namespace {
 constexpr const char* kCalibrationHint = "Write the file with `incise calibrate`";
 
 constexpr std::size_t kLeastSectors = 9, kMostSectors = 360;
-constexpr double kMostErrorMm = 10.0;  // that a case's lists hold
+constexpr double kMostErrorMm = 10.0;  // largest error that a case's lists accept
 
-/// Rings whose profiles can be used together.
+/// Returns the rings of a calibration; refuses profiles that cannot be used together.
 std::vector<RingObservation> rings_of(const Calibration& calibration, const std::filesystem::path& file) {
   std::vector<RingObservation> rings = ring_observations(calibration);
   if (rings.empty())

@@ -16,7 +16,7 @@ std::optional<double> part_of(const std::optional<Summary>& summary, double Summ
   return summary ? std::optional(*summary.*part) : std::nullopt;
 }
 
-/// Mean, sd and greatest error of one run; a failure's numbers are no errors of a resection.
+/// Returns mean, sd and greatest error of one run; nothing for a failure, whose numbers are no errors of a resection.
 std::optional<Summary> errors_of(const CalibrationRun& run) {
   return run.is_failure() ? std::nullopt : run.paper_abs_error_mm;
 }

@@ -32,7 +32,7 @@ void emit(YAML::Emitter& out, const YAML::Node& node) {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// The lines before the first key.
+/// Returns the comments and blank lines at the start of the text.
 std::string leading_comments(const std::string& text) {
   std::size_t end = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
   while (end < text.size() && (text[end] == '#' || text[end] == '\n')) {
@@ -98,7 +98,7 @@ std::string changed_case(const std::string& text, const CaseChanges& changes) {
 
 CaseFile change_case(const std::filesystem::path& file, const std::string& revision, const CaseChanges& changes) {
   const FolderLock nobody_else(std::filesystem::absolute(file).parent_path());
-  CaseFile before = read_case(file);  // within its bounds
+  CaseFile before = read_case(file);  // also checks size and nesting
   const std::string old = read_text(file);
   if (sha256_of_text(old) != revision) throw StaleRevision(file);
   const std::string text = changed_case(old, changes);

@@ -24,7 +24,8 @@
 namespace incise {
 namespace {
 
-/// Walks through the text before anything is made of it: aliases can stand for more than memory holds, and every level of nesting is a call.
+/// Checks a text before it is loaded: aliases can expand to more than memory holds, and each nesting level is a
+/// recursive call.
 class BoundedYaml : public YAML::EventHandler {
  public:
   explicit BoundedYaml(const std::filesystem::path& file) : file_(file) {}
@@ -34,7 +35,7 @@ class BoundedYaml : public YAML::EventHandler {
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { refuse(mark, "an alias (*name)", "values written out"); }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& value) override {
     count(mark);
-    // The file is UTF-8, but the escapes \N and \_ become one byte each, which is none.
+    // The file is UTF-8, but the escapes \N and \_ become one byte each, which is no valid UTF-8.
     if (const auto at = first_not_utf8(value)) {
       refuse(mark, fmt::format("a text with a byte 0x{:02X}", static_cast<unsigned char>(value[*at])),
              "UTF-8 text: the character itself in place of its escape");
@@ -65,7 +66,7 @@ class BoundedYaml : public YAML::EventHandler {
   int depth_ = 0;
 };
 
-/// @param text  of the file.
+/// Parses the text of a case file within these bounds.
 YAML::Node parse(const std::string& text, const std::filesystem::path& file) {
   try {
     if (const auto at = first_not_utf8(text)) {
@@ -84,7 +85,7 @@ YAML::Node parse(const std::string& text, const std::filesystem::path& file) {
   }
 }
 
-/// What a single range cannot say: values that have to fit each other.
+/// Checks values that must fit each other, which no single range can express.
 void require_consistent(const CaseFile& file, const std::string& name) {
   const Case& c = file.settings;
   const auto refuse = [&name](const std::string& group, const std::vector<Problem>& problems, const char* expected) {
@@ -140,7 +141,7 @@ void require_inputs(const CaseFile& file, const std::string& name) {
     throw CaseError(name, "specimen.mesh", "a CT or labels and a mesh", "either a mesh or ct.volume and ct.labels");
 }
 
-/// @param field  the list of the case that names labels.
+/// Refuses a list of the case, named `field`, that gives a label twice.
 template <class Entry>
 void require_each_label_once(const std::vector<Entry>& labels, const char* field, const std::string& name) {
   for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -151,7 +152,7 @@ void require_each_label_once(const std::vector<Entry>& labels, const char* field
   }
 }
 
-/// Labels that are listed twice, or without anything that sets them apart.
+/// Refuses labels that are listed twice, or without a material value of their own.
 void require_consistent_labels(const Case& settings, const std::string& name) {
   const char* field = "specimen.material.labels";
   const std::vector<LabelMaterial>& labels = settings.variation.labels;
@@ -164,7 +165,7 @@ void require_consistent_labels(const Case& settings, const std::string& name) {
   require_each_label_once(settings.toughness.labels, "cut.toughness", name);
 }
 
-/// Reads the surfaces that supports name.
+/// Reads the holders' surfaces that support constraints name.
 void read_holders(CaseFile& file, const std::string& name) {
   if (!file.settings.constraints) return;
   for (std::size_t i = 0; i < file.settings.constraints->size(); ++i) {

@@ -12,14 +12,15 @@
 namespace incise {
 namespace {
 
-/// Takes an output folder once the case is known to be sound, and refuses one whose own names belong to something else.
+/// Locks the output folder; refuses one that holds files from elsewhere under incise's names. Returns `file`, which
+/// lets the constructor lock before it makes the RunFolder.
 CaseFile with_folder_locked(CaseFile file, const std::filesystem::path& output, std::optional<FolderLock>& lock) {
   require_own_files(output);
   lock.emplace(output);
   return file;
 }
 
-/// Kept apart from the products: which case they are of, for `incise report`.
+/// Writes into study.json which case the products are of, for `incise report`.
 void note_case(const std::filesystem::path& file, const std::filesystem::path& output) {
   const auto relative = std::filesystem::absolute(file).lexically_proximate(std::filesystem::absolute(output));
   const std::filesystem::path record = output / "study.json";
@@ -87,7 +88,7 @@ Run CaseRun::run(std::span<const std::string> accepted, Workers& workers, Monito
                          folder);
     } catch (const Cancelled&) {
       throw;
-    } catch (...) {  // an earlier program is not one of a run that failed
+    } catch (...) {  // an earlier program does not belong to a run that failed
       remove_replaceable(folder.root() / "program");
       throw;
     }

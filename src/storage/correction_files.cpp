@@ -25,9 +25,9 @@ constexpr const char* kVerdicts = "verdicts";  // the cache's slot
 constexpr const char* kPlan = "plan";
 constexpr const char* kCorrection = "correction";
 
-/// The verdict of the cut along a product's path. A case that is changed and changed back finds it again.
+/// The verdict on the cut along a product's path. If a case is changed and changed back, a run finds it again.
 struct KeptVerdict {
-  std::string path;  // as path_json
+  std::string path;  // text of path_json
   Verdict verdict;
 };
 void describe(Visitor& v, KeptVerdict& k) {
@@ -39,7 +39,7 @@ bool is_of_a_cut(const Verdict& verdict) {
   return !verdict.has("not_simulated");
 }
 
-/// A verdict, and what another one refuses beside it.
+/// Returns a verdict with the refusals of another one added.
 Verdict with_refusals_of(const Verdict& other, Verdict verdict) {
   for (const VerdictReason& reason : other.reasons()) {
     if (reason.severity == VerdictStatus::Refused && !verdict.has(reason.id)) verdict.add(reason);
@@ -47,7 +47,7 @@ Verdict with_refusals_of(const Verdict& other, Verdict verdict) {
   return verdict;
 }
 
-/// One line per pass and waypoint.
+/// Writes one row per pass and waypoint.
 void write_history(const std::filesystem::path& file, const ConvergedCompensation& iteration) {
   write_atomically(file, [&](std::ostream& out) {
     out << "pass,waypoint,offset_mm,error_mm,limited,interpolated\n";
@@ -63,7 +63,7 @@ void write_history(const std::filesystem::path& file, const ConvergedCompensatio
   });
 }
 
-/// One line per pass and measured point.
+/// Writes one row per pass and measured point.
 void write_point_errors(const std::filesystem::path& file, const ConvergedCompensation& iteration) {
   write_atomically(file, [&](std::ostream& out) {
     out << "pass,along_mm,signed_error_mm\n";

@@ -22,11 +22,11 @@ namespace {
 
 /// A cut's tissue for pictures.
 struct CutTissue {
-  std::unique_ptr<const TissueModel> split;  // where the cut has split the mesh
-  const TissueModel& model;                  // on the split mesh
+  std::unique_ptr<const TissueModel> split;  // null: the cut has not split the mesh
+  const TissueModel& model;                  // on the split mesh, or on the whole mesh if there is none
   TissueState stretched;                     // before the cut
   DividedMesh divided;
-  std::vector<TetId> whole_tet;  // of each tet that is there
+  std::vector<TetId> whole_tet;  // of each tet of `divided`, its tet in the whole mesh
   [[nodiscard]] bool is_divided() const { return split || !divided.between.empty(); }
 };
 
@@ -47,8 +47,8 @@ CutTissue tissue_of(const TissueModel& whole, const TissueState& stretched, cons
   return tissue;
 }
 
-/// Some of the tets, with their numbers: cell data `tet` has those in the uncut mesh, and, where the cut has divided
-/// tets, `cell` those among all that there are.
+/// Returns some of the tets, with their indices as cell data: `tet` in the whole mesh and, if the cut has split or
+/// divided tets, `cell` among all tets of `tissue.divided`.
 TetMesh some_of(const CutTissue& tissue, Points vertices, const std::vector<std::uint8_t>& is_wanted) {
   TetMesh mesh;
   mesh.vertices = std::move(vertices);
@@ -64,7 +64,7 @@ TetMesh some_of(const CutTissue& tissue, Points vertices, const std::vector<std:
   return mesh;
 }
 
-/// What is left at one moment, deformed. What viscosity adds to stress is not kept in a frame.
+/// Returns the remaining tissue at one moment, deformed. Its stress lacks the viscous part, which frames do not keep.
 TetMesh live_mesh(const CutTissue& tissue, const CutFrame& frame) {
   const std::vector<std::uint8_t> is_left = tissue.divided.is_left(frame.step);
   TissueState state = tissue.stretched;
@@ -89,7 +89,7 @@ TetMesh live_mesh(const CutTissue& tissue, const CutFrame& frame) {
   return live;
 }
 
-/// All that there was before the cut, as the cut has divided it.
+/// Returns all tets in the stretched tissue before the cut, as the cut later divides them.
 TetMesh uncut_mesh(const CutTissue& tissue) {
   const DividedMesh& divided = tissue.divided;
   TetMesh mesh =
@@ -99,7 +99,7 @@ TetMesh uncut_mesh(const CutTissue& tissue) {
   return mesh;
 }
 
-/// What went, where it lay before the cut, with when and why, in order.
+/// Returns the removed tets, in order, at their places before the cut, with time and cause of their removal.
 TetMesh removed_mesh(const CutTissue& tissue, const std::vector<CutStepLog>& steps) {
   const DividedMesh& divided = tissue.divided;
   std::vector<std::size_t> gone;
@@ -136,7 +136,7 @@ TetMesh removed_mesh(const CutTissue& tissue, const std::vector<CutStepLog>& ste
   return removed;
 }
 
-/// All numbers of a cut, and what it removed.
+/// Returns all numbers of a cut, and its removals.
 nlohmann::ordered_json incision_json(const SimulatedCut& cut) {
   nlohmann::ordered_json json = to_json(cut);
   json["removal_columns"] = {"tet", "step", "time_s", "cause", "rest_volume_mm3"};
@@ -149,7 +149,7 @@ nlohmann::ordered_json incision_json(const SimulatedCut& cut) {
   return json;
 }
 
-/// What each step of the cut did, one line each.
+/// Writes one row for each step of the cut.
 void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog>& steps) {
   write_atomically(file, [&steps](std::ostream& out) {
     out << "time_s,iterations,tets_in_contact,removed,slipped,tool_force_x_mn,tool_force_y_mn,tool_force_z_mn,"
@@ -164,7 +164,7 @@ void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog
   });
 }
 
-/// Frames as a ParaView time series, the tool beside them as columns of a table.
+/// Writes the frames as a ParaView time series, and the tool's poses at their times as JSON.
 void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, const std::vector<CutFrame>& frames) {
   if (frames.empty()) return;
   std::filesystem::create_directories(folder / "frames");
@@ -194,7 +194,7 @@ void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, 
 void RunFolder::cut(const ProductNote& note, const TissueModel& model, const StaticResult& stretched,
                     const SimulatedCut& cut) {
   const nlohmann::ordered_json json = incision_json(cut);
-  // Its files say what it is worth, too: what it is judged by is not part of what it is cut by.
+  // The files also hold the cut's measures, which depend on settings that are not part of the cut's key.
   nlohmann::ordered_json without_times = json;
   for (const char* time : {"wall_s", "ms_per_step"}) without_times.erase(time);
   ProductNote judged = note;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr Range kPlaceMm{-1e5, 1e5};  // from a scan's or a robot's origin
 constexpr Range kDistanceMm{-kLargestBodyMm, kLargestBodyMm};
-constexpr double kMostPoints = 1e5;  // at 0.25 mm: 25 m of contour; whoever compares them draws them over and over
+constexpr double kMostPoints = 1e5;  // at 0.25 mm: 25 m of contour; the comparison's bootstrap draws them many times
 constexpr const char* kEvaluationHint = "Write the file with `incise evaluate … -o FILE.json`";
 
 void require_all(const Visitor& v, std::string_view name, const std::vector<double>& values, const Range& range) {
@@ -28,7 +28,7 @@ void require_size(const Visitor& v, const char* name, const std::vector<double>&
   if (values.size() != size) v.refuse({name}, fmt::format("{} numbers", values.size()), fmt::format("{}", size));
 }
 
-/// A contour as files of evaluations hold it: equally long lists of coordinates.
+/// A contour in the form of an evaluation's file: equally long lists of coordinates.
 struct CoordinateLists {
   Contour contour;
 };
@@ -49,7 +49,7 @@ void describe(Visitor& v, CoordinateLists& c) {
     c.contour.points.emplace_back(lists[0][i], lists[1][i], lists[2][i]);
 }
 
-/// The points of an evaluation, without their places.
+/// The points of an evaluation, without their coordinates.
 struct PointErrors {
   std::vector<double> signed_error_mm, clock_h;
 };
@@ -65,7 +65,7 @@ void describe(Visitor& v, PointErrors& p) {
   require_all(v, "clock_h", p.clock_h, {0.0, 12.0, false, true});
 }
 
-/// What is read of one of the zones.
+/// The part of a zone that is read.
 struct ZoneBorder {
   double at_or_below_mm = 0.0;
 };
@@ -73,7 +73,7 @@ void describe(Visitor& v, ZoneBorder& z) {
   v({"at_or_below_mm", "Upper border.", "mm"}, z.at_or_below_mm, kDistanceMm);
 }
 
-/// A photograph whose scale or perspective is wrong has numbers, but none that a comparison or a calibration may use.
+/// Refuses a refused measurement: if a photograph's scale or perspective is wrong, its numbers must not be used.
 void require_not_refused(const std::optional<Verdict>& verdict, const std::filesystem::path& path) {
   if (!verdict || verdict->status() != VerdictStatus::Refused) return;
   const VerdictReason& worst = verdict->reasons().front();
@@ -94,7 +94,7 @@ void describe(Visitor& v, PhotographedContours& c) {
     v.refuse({"approach"}, fmt::format("a vector of length {:.4g}", c.approach.norm()), kDirectionText);
 }
 
-/// What a photograph of a cut cannot show is no measurement of one.
+/// Refuses a contour of a size that a photograph of a cut cannot show.
 void require_size(const Contour& contour, const char* what, double largest_mm, const std::filesystem::path& path,
                   const char* place) {
   if (const auto problem = size_problem(contour, what, largest_mm))

@@ -9,8 +9,8 @@
 
 namespace incise {
 
-/// Builds the JSON Schema of what is described: the values found are the defaults. Items of a list, and
-/// groups that may be absent, have no defaults but for optional fields.
+/// Builds the JSON Schema of the described type, with the present values as defaults. In items of a list and in
+/// optional groups, only optional fields have defaults.
 class SchemaWriter : public Visitor {
  public:
   [[nodiscard]] bool sets() const override { return false; }
@@ -27,18 +27,18 @@ class SchemaWriter : public Visitor {
   void choice(const Field& field, std::size_t& value, Names names) override;
   void block(const Field& field, const Block& block) override;
   std::size_t key(std::size_t& place, std::span<const Field> keys) override;
-  /// Properties of the outermost level.
+  /// Returns the properties of the outermost level.
   [[nodiscard]] nlohmann::ordered_json properties() const { return levels_.front().properties; }
 
  private:
   struct Level {
     Field field;
     bool is_optional = false;
-    bool is_of_item = false;  ///< an item of a list, a group that may be absent, or in one
+    bool is_of_item = false;  ///< an item of a list, an optional group, or inside one
     nlohmann::ordered_json properties = nlohmann::ordered_json::object();
     nlohmann::ordered_json items = nlohmann::ordered_json::array();  ///< of a list: one of each kind
     std::vector<std::string> required;
-    std::vector<std::string> keys;  ///< just one of them is there
+    std::vector<std::string> keys;  ///< exactly one of them must exist
   };
   Level& open(const Field& field);
   [[nodiscard]] Level close();
@@ -46,10 +46,10 @@ class SchemaWriter : public Visitor {
   template <class Value>
   void add_with_default(const Field& field, nlohmann::ordered_json schema, const Value& value);
   std::vector<Level> levels_ = std::vector<Level>(1);
-  std::optional<bool> is_there_;  ///< of the field that comes next, where it is optional
+  std::optional<bool> is_there_;  ///< set if the next field is optional: whether it has a value
 };
 
-/// Lists every setting as one line, in order; absent optional ones have an empty value. A list is one line, too.
+/// Lists every setting as one line, in order; absent optional ones have an empty value. A whole list is one line.
 class SettingLister : public Visitor {
  public:
   struct Line {

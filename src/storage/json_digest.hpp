@@ -6,10 +6,10 @@
 
 namespace incise {
 
-/// The key by which a file carries the digest of what else is in it.
+/// The key under which a file carries the digest of its other content.
 inline constexpr const char* kDigestKey = "digest_sha256";
 
-/// SHA-256 of the document's compact JSON without that key.
+/// Returns the SHA-256 of the document's compact JSON without that key.
 [[nodiscard]] std::string digest_of(nlohmann::ordered_json document);
 
 }  // namespace incise

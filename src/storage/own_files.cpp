@@ -36,7 +36,7 @@ bool is_own_page(const fs::path& file) {
 void require_own_files(const fs::path& output) {
   if (fs::weakly_canonical(output) == output.root_path())
     throw CaseError("command line", "-o", output.string(), "a folder of its own, not the root of all files");
-  require_no_link(output.has_filename() ? output : output.parent_path());  // a/ is the link a, too
+  require_no_link(output.has_filename() ? output : output.parent_path());  // "a/" hides that a is a link
   for (const char* name : {"study.json", "manifest.json"}) require_no_link(output / name);
   const fs::path record = output / "study.json", manifest = output / "manifest.json";
   if (fs::exists(manifest) && !is_own_manifest(manifest)) refuse_foreign(manifest, "a file of another origin");
@@ -61,7 +61,7 @@ void require_own_manifest_beside(const fs::path& result) {
 void require_own_program(const fs::path& program) {
   require_no_link(program);
   if (!fs::is_regular_file(program)) return;
-  const std::string text = read_text(program);  // a bag's header is text within it
+  const std::string text = read_text(program);  // a ROS bag is binary, but its header is text
   const bool is_own =
       text.find("# incise.made_by: ") != std::string::npos || text.find("\"incise.program/1\"") != std::string::npos;
   if (!is_own) refuse_foreign(program, "a file of another origin");

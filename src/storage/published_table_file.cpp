@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::array<std::string_view, 5> kQuantities{"mean", "sd", "max", "min", "n"};
 
-/// Some kB are kept of each row, and a published table has a few hundred cells.
+/// Limits memory: each row takes some kB. A published table has a few hundred cells.
 constexpr std::size_t kMostCells = 200'000;
 
-/// What a column holds: a quantity of a part ("" for the row's own).
+/// Content of a column: a quantity of a part; part "" is the row itself.
 struct ColumnRole {
   std::string part;
   std::string quantity;  ///< one of kQuantities; empty: part of the row's name
@@ -43,7 +43,7 @@ bool says_nothing(std::string text) {
   return text.empty() || text == "-" || text == "–" || text == "n/a" || text == "failure" || text == "failed";
 }
 
-/// Which column holds which quantity of which part; parts in the order of the header.
+/// Index of the column for each quantity of each part; parts in the order of the header.
 struct Columns {
   std::vector<std::string> parts;
   std::map<std::string, std::map<std::string, std::size_t>> places;
@@ -87,7 +87,7 @@ Columns columns_of(const TextTable& table, const std::filesystem::path& path) {
   return columns;
 }
 
-/// One row of the file, where errors can say so.
+/// One row of the file, with what errors need to name it.
 struct TableRow {
   const std::filesystem::path& path;
   const TextTable& table;

@@ -26,7 +26,7 @@ void seal_registration(Json& document) {
 
 namespace {
 
-/// @returns whether it carries the digest of what is in it
+/// @returns whether the document carries its digest.  @throws DataError if the digest is wrong.
 bool has_its_digest(const Json& document, const std::filesystem::path& file) {
   const auto found = document.find(kDigestKey);
   if (found == document.end()) return false;
@@ -47,7 +47,7 @@ std::vector<std::string> doubts_in(const Json& document, const std::filesystem::
   return found->get<std::vector<std::string>>();
 }
 
-/// A finite number of an object; nothing where the key is missing or null.
+/// Returns a number in [least, most] of an object; nothing if the key is missing or null.
 std::optional<double> number_of(const Json& object, const char* key, const std::filesystem::path& file, double least,
                                 double most, const std::string& at = "") {
   const auto found = object.find(key);
@@ -69,7 +69,7 @@ std::optional<bool> truth_of(const Json& object, const char* key, const std::fil
   return found->get<bool>();
 }
 
-/// One statement of a file against another: who wrote or changed it was mistaken in one of them.
+/// Refuses a file whose statements contradict each other.
 void require_no_contradiction(const Json& document, const RegistrationRecord& record,
                               const std::filesystem::path& file) {
   constexpr double kSameScale = 1e-4;  // relative: numbers may have been shortened

@@ -28,10 +28,10 @@ namespace {
 constexpr const char* kStageFile = "stage.json";
 /// The folders of a run's products, each after those that it is made from.
 constexpr std::array kProducts{"labels", "mesh", "stretched", "plan", "as_planned", "correction", "corrected"};
-/// What is made of them, once they are all there.
+/// Folders made from the products.
 constexpr std::array kMadeOfThem{"program", "robust", "assessment"};
 
-/// Digest of each file of a product. The verdict in a path's file comes and goes: it is left out.
+/// Returns a digest of each file of a product, without the verdict in a path's file, which may change.
 nlohmann::ordered_json digests_in(const std::filesystem::path& folder) {
   std::map<std::string, std::string> digests;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
@@ -43,9 +43,9 @@ nlohmann::ordered_json digests_in(const std::filesystem::path& folder) {
   return digests;
 }
 
-/// Whether a product's folder is there and was written for that key. @throws DataError for a folder of that key of
-/// which a file was changed, removed or added since: the change may be somebody's work. A note or a picture of the
-/// user's own does not hurt: what could be read in place of the product would.
+/// Whether a product's folder exists and was written for that key. @throws DataError if it has that key but a file was
+/// changed, removed or added since, because the change may be somebody's work. Added files are ignored, such as a note
+/// or a picture, unless their extension is one of the products' formats.
 bool is_written(const std::filesystem::path& folder, const std::string& key) {
   if (!std::filesystem::exists(folder / kStageFile)) return false;
   const auto refuse = [&folder](const std::filesystem::path& file, const std::string& found) {
@@ -76,7 +76,7 @@ bool is_written(const std::filesystem::path& folder, const std::string& key) {
   return true;
 }
 
-/// @throws DataError where a labelled voxel lies more than one voxel of the scan outside it.
+/// Checks that labels lie in a scan. @throws DataError if a labelled voxel lies more than one voxel outside the scan.
 void require_inside(const LabelVolume& labels, const std::filesystem::path& file, const VolumeGrid& scan,
                     const std::filesystem::path& scan_file) {
   const Vec3 last(scan.size[0], scan.size[1], scan.size[2]);
@@ -93,7 +93,7 @@ void require_inside(const LabelVolume& labels, const std::filesystem::path& file
   }
 }
 
-/// Takes a verdict away from its path. What refused the path stays until a run says otherwise: nobody may accept it.
+/// Removes the verdict from a path's file. Refusals stay until a run cuts the path again: nobody may accept them.
 void take_verdict_from(const std::filesystem::path& file) {
   const Verdict older = read_path_verdict(file);
   if (older.status() != VerdictStatus::Refused) return write_tool_path(file, read_tool_path(file));
@@ -183,7 +183,7 @@ void RunFolder::write(const ProductNote& note, const std::function<void(const st
   const std::filesystem::path target_folder = folder(note.name);
   const auto place = std::ranges::find(kProducts, note.name);
   INCISE_REQUIRE(place != kProducts.end(), fmt::format("expected a product of a run, found '{}'", note.name));
-  // Its manifest and its path name the specimen, which nothing of it is computed from.
+  // The key includes the specimen, which the manifest and the path's file name, although nothing is computed from it.
   const std::string key =
       sha256_of_text(fmt::format("{} {} {}", note.key, specimen_id(), file_.settings.is_virtual ? "virtual" : "real"));
   if (is_written(target_folder, key)) return;
@@ -194,8 +194,8 @@ void RunFolder::write(const ProductNote& note, const std::function<void(const st
   fill(target.path());
   write_manifest_to(target.path(), note.wall_s);
   write_json(target.path() / kStageFile, {{"key", key}, {"wall_s", note.wall_s}, {"files", digests_in(target.path())}});
-  // What was made from the older product is of no use any more, and a report must not mix the two. It goes first: a run
-  // that is killed here leaves nothing that would look like the new product's.
+  // Results made from the older product are obsolete, and a report must not mix the two. They are removed first: if the
+  // run is killed here, nothing is left that would seem to belong to the new product.
   for (const char* made_of_it : kMadeOfThem) remove_replaceable(root_ / made_of_it);
   for (auto later = place + 1; later != kProducts.end(); ++later) remove_replaceable(folder(*later));
   target.commit();
@@ -234,7 +234,7 @@ void RunFolder::remove_what_is_out_of_date(Stage until, Monitor& monitor) {
                                 "all of them are computed again",
                                 root_.string()));
   }
-  // What a path is worth depends on more than the path: a run that cuts says it again at its end.
+  // A verdict depends on more than the path; a run that cuts writes it again at its end.
   const bool stays = until < Stage::Simulate && is_own_manifest(root_ / "manifest.json") && is_made_as_now(root_);
   for (const char* product : {"plan", "correction"}) {
     const std::filesystem::path path = folder(product) / "path.json";
@@ -245,7 +245,7 @@ void RunFolder::remove_what_is_out_of_date(Stage until, Monitor& monitor) {
     }
   }
   if (is_own_manifest(root_ / "manifest.json") && !is_made_as_now(root_)) {
-    // The summary of another run: its verdict and its program are not this case's.
+    // The summary is of another run: its verdict and program do not belong to this case.
     const std::filesystem::path record = root_ / "study.json";
     nlohmann::ordered_json kept = nlohmann::ordered_json::object();
     if (std::filesystem::exists(record)) {

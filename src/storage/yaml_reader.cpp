@@ -23,7 +23,7 @@ std::string shown(const YAML::Node& node) {
   return text.size() <= kShown ? fmt::format("'{}'", text) : fmt::format("'{}…'", text.substr(0, kShown));
 }
 
-/// Unit vector of an anatomical direction in LPS; nothing for any other word.
+/// Returns the unit vector of an anatomical direction in LPS; nothing for any other word.
 std::optional<Eigen::Vector3d> anatomical_direction(const std::string& word) {
   using Eigen::Vector3d;
   if (word == "left") return Vector3d::UnitX();
@@ -84,7 +84,7 @@ void YamlReader::refuse_unknown_keys(const Level& level) const {
   }
 }
 
-/// The node of a field; of no name: of the level itself.
+/// Returns the node of a field; with an empty name, the node of the level itself.
 YAML::Node YamlReader::find(std::string_view name) const {
   const YAML::Node& node = levels_.back().node;  // const: looking up must not insert
   if (name.empty()) return node;
@@ -92,7 +92,7 @@ YAML::Node YamlReader::find(std::string_view name) const {
   return node[std::string(name)];
 }
 
-/// The node of a field that is visited, which is known from now on, or of the next item of a list.
+/// Returns the node of the visited field and marks its key as known; in a list, returns the next item.
 YAML::Node YamlReader::take(const Field& field) {
   Level& level = levels_.back();
   const bool is_optional = std::exchange(is_optional_, false);

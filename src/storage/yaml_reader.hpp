@@ -11,12 +11,12 @@
 
 namespace incise {
 
-/// Sets what is described from YAML, strictly: what is absent keeps its default, what is unknown or does not fit is a
-/// CaseError that says where ("case.yaml line 7"), which field, what was found and what was expected. In an item of a
-/// list every field has to be there that is not optional.
+/// Reads described fields from YAML, strictly. An absent field keeps its default; an unknown key or an unsuitable value
+/// throws CaseError with place ("case.yaml line 7"), field, found and expected. In an item of a list, every field that
+/// is not optional is required.
 class YamlReader : public Visitor {
  public:
-  /// @param name  the file's name for messages.
+  /// @param name  name of the file, for messages
   YamlReader(const YAML::Node& root, std::string name);
 
   [[nodiscard]] bool sets() const override { return true; }
@@ -43,11 +43,11 @@ class YamlReader : public Visitor {
     YAML::Node node;   ///< a map or list, or undefined where it is absent
     std::string name;  ///< dotted, "" for the outermost
     bool is_list = false;
-    bool is_of_item = false;            ///< an item of a list, a group that may be absent, or in one
+    bool is_of_item = false;            ///< an item of a list, an optional group, or inside one
     std::size_t next = 0;               ///< item
-    std::vector<std::string> known;     ///< fields that were asked for
-    std::vector<std::string> required;  ///< of them, those without a meaning
-    std::optional<Field> missing;       ///< the first one of them that is not there
+    std::vector<std::string> known;     ///< fields that were visited
+    std::vector<std::string> required;  ///< required fields whose description has no meaning
+    std::optional<Field> missing;       ///< the first required field that is absent
   };
   [[nodiscard]] YAML::Node find(std::string_view name) const;
   [[nodiscard]] YAML::Node take(const Field& field);
@@ -62,7 +62,7 @@ class YamlReader : public Visitor {
 
   std::string name_;
   std::vector<Level> levels_;
-  bool is_optional_ = false;  ///< the field that comes next
+  bool is_optional_ = false;  ///< whether the next field is optional
 };
 
 }  // namespace incise

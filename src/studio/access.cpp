@@ -18,7 +18,7 @@ bool is_this_machine(std::string_view host) {
   return !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Takes as long for any text of that length, so that its time says nothing of where it differs.
+/// Takes equally long for any text of that length, so its time does not reveal where the texts differ.
 bool is_same(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;

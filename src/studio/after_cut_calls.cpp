@@ -40,11 +40,11 @@ namespace {
 
 using Json = Calls::Json;
 
-constexpr std::size_t kMostPixels = 20000;  // of a contour that is drawn by hand
+constexpr std::size_t kMostPixels = 20000;  // greatest number of points of a contour that is drawn by hand
 constexpr double kFrameS = 0.04;            // between two pictures of the arm
-constexpr const char* kNoMark = "none";     // on a frame's tissue
+constexpr const char* kNoMark = "none";     // for a frame without a mark on the tissue
 constexpr double kFrameVoxelMm = 1.0;       // one point of a frame's tissue in each cube of this size
-constexpr double kFarMm = 5.0;              // a surface's point this far from every point of a cloud was not seen
+constexpr double kFarMm = 5.0;              // a point of a surface this far from every point of a cloud was not seen
 
 void append(std::vector<std::string>& words, const std::vector<std::string>& more) {
   words.insert(words.end(), more.begin(), more.end());
@@ -56,7 +56,7 @@ Json pixels_json(const std::vector<Vec2>& pixels) {
   return json;
 }
 
-/// Every file of a folder of results, named from the case's folder on.
+/// Returns every file of a folder of results, named relative to the case's folder.
 Json files_in(const fs::path& folder, const fs::path& of_case) {
   std::vector<std::string> names;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -66,8 +66,8 @@ Json files_in(const fs::path& folder, const fs::path& of_case) {
   return names;
 }
 
-/// The folder of what was found in a file, `PREFIX_STEM` in the case's folder: the same as before for the same file,
-/// and one of its own for another file of that name.
+/// Returns the folder for the results of a file, `PREFIX_STEM` in the case's folder: the same as before for the same
+/// file, and a new one for another file of that name.
 fs::path folder_of_finding(const CaseFile& file, const std::string& prefix, const fs::path& source) {
   for (int k = 1;; ++k) {
     fs::path folder = file.folder / (k == 1 ? prefix + source.stem().string()
@@ -76,7 +76,7 @@ fs::path folder_of_finding(const CaseFile& file, const std::string& prefix, cons
     try {
       const std::vector<ManifestInput> inputs = read_manifest(folder).inputs;
       if (!inputs.empty() && inputs.front().path == source.string()) return folder;
-    } catch (const DataError&) {  // somebody else's
+    } catch (const DataError&) {  // not incise's own
     }
   }
 }
@@ -128,7 +128,7 @@ std::vector<std::string> scale_words(const steps::ScaleRequest& scale) {
   return words;
 }
 
-/// Contours that a person drew over a photograph, in its pixels; an empty one was not drawn.
+/// Contours that a person drew over a photograph, in its pixels; empty: not drawn.
 struct DrawnContours {
   std::vector<Vec2> incision_px, tumor_edge_px;
   bool incision_is_closed = true;
@@ -190,8 +190,8 @@ void require_in_picture(const std::vector<Vec2>& pixels, const char* name, const
   }
 }
 
-/// The measures of contours of which a person drew one at least; both are written beside them.
-/// @param found  what the photograph shows, for the one that was not drawn.
+/// Measures contours of which a person drew at least one; both are written beside the measures.
+/// @param found  contours in the photograph, in place of the one that was not drawn.
 steps::EvaluatedCut evaluate_drawn(const steps::EvaluateRequest& request, const DrawnContours& drawn,
                                    const steps::FoundPixels& found, const fs::path& to,
                                    const steps::StepContext& context) {
@@ -247,8 +247,9 @@ Points moved_by(const Mat4& T, const Points& points) {
   return moved;
 }
 
-/// Of each point along its normal from the cloud about it: the median over the nearest of its points, so that their
-/// noise does not hide what both surfaces differ by. Not a number where the cloud has none near.
+/// Returns the distance of each point from the cloud, mm, along its normal (if it has one): the median over the nearest
+/// points of the cloud, so that their noise does not hide the difference of the surfaces. Not a number where no point
+/// of the cloud is near.
 std::vector<float> residuals_of(const PointCloud& surface, const Points& cloud) {
   constexpr std::size_t kNear = 9;
   const NeighbourSearch search(cloud);
@@ -265,7 +266,7 @@ std::vector<float> residuals_of(const PointCloud& surface, const Points& cloud) 
   return residuals;
 }
 
-/// The line that was found with a cloud, by `frame` or by `incise track`; nothing for another cloud.
+/// Returns the line that `frame` or `incise track` found with a cloud; nothing for another cloud.
 std::optional<Contour> marked_beside(const fs::path& cloud) {
   const fs::path of_frame = cloud.parent_path() / "track" / "contour.csv",
                  of_track = cloud.parent_path() / "contour.csv";
@@ -274,7 +275,7 @@ std::optional<Contour> marked_beside(const fs::path& cloud) {
   return std::nullopt;
 }
 
-/// The case's edge on a cloud, and how far the points of the marked one lie from it.
+/// Returns the case's edge on a cloud, and the distances of the marked edge's points from it.
 Json edges_json(const Points& simulated, const std::optional<Contour>& marked) {
   Json json{
       {"simulated_mm", points_json(simulated)}, {"marked_mm", nullptr}, {"mean_mm", nullptr}, {"greatest_mm", nullptr}};
@@ -292,7 +293,7 @@ Json edges_json(const Points& simulated, const std::optional<Contour>& marked) {
   return json;
 }
 
-/// The colour of a frame's mark; nothing: it has none.
+/// Returns the colour of a frame's mark; nothing: it has none.
 std::optional<InkColor> mark_in(const Json& arguments) {
   const auto word = argument<std::string>(arguments, "mark", "red, green or none");
   if (word == kNoMark) return std::nullopt;
@@ -326,7 +327,7 @@ std::vector<std::string> words_of(const steps::ExportRequest& making, const fs::
   return words;
 }
 
-/// Why a gate lets no program through, for a person.
+/// Says why a gate lets no program through.
 std::string why_closed(const Json& gate) {
   const auto listed = [&](const char* key) {
     std::string names;
@@ -337,7 +338,7 @@ std::string why_closed(const Json& gate) {
   return "cautions that nobody has accepted: " + listed("missing");
 }
 
-/// The surface of the stretched specimen as the camera would see it: `surface.ply` in a folder of its own.
+/// Writes the surface of the stretched specimen as the camera would see it: `surface.ply` in its own folder.
 void write_simulated_surface(const CaseFile& file, const steps::StepContext& step) {
   AtomicFolder target(surface_folder(file));
   steps::SurfaceRequest seen;
@@ -353,7 +354,7 @@ void remove_registration(const CaseFile& file) {
   remove_replaceable(registration_folder(file));
 }
 
-/// A program that the arm would not run to its end as it was checked is none. @returns why; empty: it does
+/// Returns why the arm would not run a program to its end as it was checked; empty: it would.
 std::string fault_of(const fs::path& script) {
   const WrittenProgram program = program_from_text(read_text(script), script);
   Replay replay = play(program);
@@ -362,7 +363,7 @@ std::string fault_of(const fs::path& script) {
   return fmt::format("replay: {}{}{}", to_string(replay.outcome), replay.reason.empty() ? "" : ": ", replay.reason);
 }
 
-/// Of the arm along a program, every kFrameS, the last cycle among them.
+/// Positions of the arm along a program, every kFrameS, with the last cycle among them.
 struct ArmFrames {
   std::vector<float> time_s, ends;
   Points tips;
@@ -559,7 +560,7 @@ Json Calls::register_cloud(const Json& arguments) {
   const std::vector<Problem> problems = validate(request.settings);
   if (!problems.empty()) throw CaseError("request", problems.front());
   const std::optional<Contour> marked = marked_beside(target);
-  remove_registration(file);  // and what was laid by it
+  remove_registration(file);  // and the paths that were laid by it
   const bool has_edge = !file.inputs.tumor_contour.empty();
   const Study study = study_until(has_edge ? Stage::Plan : Stage::Stretch);
   write_simulated_surface(file, step);
@@ -616,8 +617,8 @@ Json Calls::lay(const Json& arguments) {
     throw CaseError(registration.string(), "source", "another surface", "this case's, registered here");
   const steps::StepContext step{context(), workers_, monitor_};
   const fs::path output = output_beside(file_);
-  write_simulated_surface(file, step);             // another one than was registered is refused
-  const Study study = study_until(Stage::Verify);  // the last: it leaves the paths with their verdicts
+  write_simulated_surface(file, step);             // a surface other than the registered one is refused
+  const Study study = study_until(Stage::Verify);  // the last stage: it leaves the paths with their verdicts
   if (!study.as_planned) throw CaseError(file_.string(), "plan", "nothing was cut", "a path that was cut");
   const fs::path planned = output / "plan" / "path.json";
   if (!study.is_accepted && !file.inputs.tool_path.empty())
@@ -632,7 +633,7 @@ Json Calls::lay(const Json& arguments) {
     laying.camera = text_argument(arguments, "camera");
   const fs::path folder = laid_folder(file, kind);
   AtomicFolder target(folder);
-  // Where the files lie: first where they are made, then where they are to be.
+  // Where the files are: first where they are made, then at their destination.
   const auto lie_in = [&](const fs::path& place) {
     laying.output = place / "path";
     making.path = laying.output / "path.json";
@@ -670,7 +671,7 @@ Json Calls::lay(const Json& arguments) {
   write_manifest(
       target.path(),
       steps::manifest_of(step.run, "{}", {laying.path, registration, laying.surface, laying.camera}, step.wall_s()));
-  if (case_revision(file_) != revision) throw StaleRevision(file_);  // what the run left may be of another case
+  if (case_revision(file_) != revision) throw StaleRevision(file_);  // the run's results may be of another case
   target.commit();
   lie_in(folder);
   json["files"] = files_in(folder, file.folder);

@@ -12,8 +12,8 @@
 
 namespace incise::studio {
 
-/// An argument of a call. @param expected  for the message.
-/// @throws CaseError where it is missing or of another type.
+/// Returns an argument of a call. @param expected  for the message.
+/// @throws CaseError if it is missing or of another type.
 template <class Value>
 Value argument(const nlohmann::ordered_json& arguments, const char* name, const char* expected) {
   const auto found = arguments.find(name);
@@ -24,13 +24,13 @@ Value argument(const nlohmann::ordered_json& arguments, const char* name, const 
   throw CaseError("request", name, found == arguments.end() ? "nothing" : found->dump().substr(0, 80), expected);
 }
 
-/// The same of one that may be left out.
+/// As argument, with a default for an argument that is left out.
 template <class Value>
 Value argument_or(const nlohmann::ordered_json& arguments, const char* name, const char* expected, Value otherwise) {
   return arguments.contains(name) ? argument<Value>(arguments, name, expected) : otherwise;
 }
 
-/// A word of a list. @throws CaseError
+/// Returns an argument that is one word of a list. @throws CaseError
 template <Named E>
 E word_argument(const nlohmann::ordered_json& arguments, const char* name) {
   const std::string expected = choices(names_of(E{}));
@@ -41,17 +41,17 @@ E word_argument(const nlohmann::ordered_json& arguments, const char* name) {
 
 /// @throws CaseError
 [[nodiscard]] std::string text_argument(const nlohmann::ordered_json& arguments, const char* name);
-/// A number that is above 0, and finite. @throws CaseError
+/// A finite number above 0. @throws CaseError
 [[nodiscard]] double positive_argument(const nlohmann::ordered_json& arguments, const char* name);
-/// A whole number of at least 0. @throws CaseError
+/// A whole number >= 0. @throws CaseError
 [[nodiscard]] std::uint64_t seed_argument(const nlohmann::ordered_json& arguments, const char* name);
-/// The same of things to count: at most a billion. @throws CaseError
+/// A whole number from 0 to a billion. @throws CaseError
 [[nodiscard]] int count_argument(const nlohmann::ordered_json& arguments, const char* name);
 /// A list of [x, y, z]. @throws CaseError
 [[nodiscard]] Points points_argument(const nlohmann::ordered_json& arguments, const char* name);
 /// A list of [u, v]. @throws CaseError
 [[nodiscard]] std::vector<Vec2> pixels_argument(const nlohmann::ordered_json& arguments, const char* name);
-/// Ids of cautions that a person accepts; left out: none. @throws CaseError also for one that is no rule's.
+/// Ids of the cautions that a person accepts; left out: none. @throws CaseError, also for an id without a rule.
 [[nodiscard]] std::vector<std::string> accepted_argument(const nlohmann::ordered_json& arguments);
 
 }  // namespace incise::studio

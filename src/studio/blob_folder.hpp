@@ -12,17 +12,17 @@
 
 namespace incise::studio {
 
-/// Arrays of results as files, little-endian. A slot holds one: the next one takes its place.
+/// Arrays of results as little-endian files. A slot holds one array; the next one replaces it.
 class BlobFolder {
  public:
   explicit BlobFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// @returns {"blob", "type", "count"}.  @throws DataError where it cannot be written.
+  /// @returns {"blob", "type", "count"}. @throws DataError if the file cannot be written.
   nlohmann::ordered_json put(const std::string& slot, std::span<const std::int16_t> values);
   nlohmann::ordered_json put(const std::string& slot, std::span<const std::uint8_t> values);
   nlohmann::ordered_json put(const std::string& slot, std::span<const std::uint32_t> values);
   nlohmann::ordered_json put(const std::string& slot, std::span<const float> values);
-  /// Coordinates, x y z after each other, as float32.
+  /// Coordinates as float32: x y z of each point in turn.
   nlohmann::ordered_json put(const std::string& slot, std::span<const Vec3> points);
   /// Corners of triangles as uint32.
   nlohmann::ordered_json put(const std::string& slot, std::span<const Triangle> triangles);

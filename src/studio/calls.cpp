@@ -35,13 +35,13 @@ namespace {
 
 using Json = Calls::Json;
 
-constexpr double kEdgeStepMm = 1.0;            // of a drawn edge
-constexpr double kMomentS = 1.0;               // between two pictures of a cut under way, at least
-constexpr double kMomentShare = 0.04;          // of the time, at most, that they take
-constexpr std::size_t kMostEdgePoints = 2000;  // that a person draws
+constexpr double kEdgeStepMm = 1.0;            // spacing of points of a drawn edge
+constexpr double kMomentS = 1.0;               // least time between two pictures of a running cut
+constexpr double kMomentShare = 0.04;          // greatest share of the time that they take
+constexpr std::size_t kMostEdgePoints = 2000;  // greatest number that a person draws
 constexpr std::string_view kDrawnEdge = "tumor_edge";
 
-/// A plain name for a new folder.
+/// Returns a plain name for a new folder.
 std::string folder_name(const Json& arguments) {
   std::string name = text_argument(arguments, "name");
   const bool is_plain = !name.empty() && name.size() <= 100 && !name.starts_with('.') &&
@@ -53,7 +53,7 @@ std::string folder_name(const Json& arguments) {
   return name;
 }
 
-/// A folder that is not there yet.
+/// Returns a folder that does not exist yet.
 fs::path new_folder(const fs::path& parent, const std::string& name) {
   fs::path folder = parent / name;
   if (fs::exists(fs::symlink_status(folder)))
@@ -88,7 +88,7 @@ std::string joined(const std::string& group, const std::string& name) {
   return group.empty() ? name : group + "." + name;
 }
 
-/// Settings as they have types, without what a person cannot set. @param known  the keys of the case file.
+/// Returns settings with their types, without those that a person cannot set. @param known  the keys of the case file.
 Json settings_json(const Json& all, const std::set<std::string>& known, const std::string& group) {
   Json kept = Json::object();
   for (const auto& [name, value] : all.items()) {
@@ -103,7 +103,7 @@ Json settings_json(const Json& all, const std::set<std::string>& known, const st
   return kept;
 }
 
-/// The words of each field that takes one of a list, by its key.
+/// Adds the choices of each field that has a list of them, by its key.
 void add_choices(const Json& properties, const std::string& group, Json& choices) {
   for (const auto& [name, field] : properties.items()) {
     const std::string key = joined(group, name);
@@ -118,7 +118,8 @@ Json choices_json() {
   return choices;
 }
 
-/// The edge that the case names; null where there is none or its file cannot be read (the call `plan` reports why).
+/// Returns the edge that the case names; null if there is none or its file cannot be read (the call `plan` reports
+/// why).
 Json edge_json(const CaseFile& file) {
   if (file.inputs.tumor_contour.empty()) return nullptr;
   try {
@@ -150,7 +151,7 @@ Json case_json(const CaseFile& file) {
   return json;
 }
 
-/// The values of a label volume but 0, and how many voxels have each.
+/// Returns the values of a label volume other than 0, and the number of voxels of each.
 Json label_counts(const LabelVolume& labels) {
   std::array<std::size_t, 256> counts{};
   for (const std::uint8_t label : labels.voxels) ++counts[label];
@@ -174,7 +175,7 @@ Contour edge_argument(const Json& arguments) {
   return drawn;
 }
 
-/// Where a drawn edge goes: a name that is free, so that no edge is ever lost.
+/// Returns a free name for a drawn edge, so no edge is ever lost.
 fs::path file_for_edge(const CaseFile& file) {
   for (int k = 1;; ++k) {
     fs::path name =
@@ -191,7 +192,7 @@ std::set<fs::path> files_of(const CaseFile& file) {
   return files;
 }
 
-/// A change may name a file that the case names already, one in the case's folder, or one that was chosen by its id.
+/// Requires that a change names only files that the case already names, in the case's folder, or chosen by their ids.
 void require_known_files(const CaseFile& before, const CaseFile& after, const std::set<fs::path>& chosen) {
   const std::set<fs::path> known = files_of(before);
   const fs::path folder = fs::weakly_canonical(after.folder);
@@ -209,7 +210,7 @@ MadeSkin made_skin_of(const Study& study) {
   return study.segmentation ? MadeSkin(*study.segmentation) : MadeSkin();
 }
 
-/// A cut of a run, for a person. @param cut  as_planned, pass_1 …, corrected.
+/// Names a cut of a run for a person. @param cut  as_planned, pass_1 …, corrected.
 std::string part_of_run(const std::string& cut) {
   for (int pass = 1; pass <= kMostPasses; ++pass) {
     if (cut == name_of_pass(pass))
@@ -237,7 +238,7 @@ void remove_laid(const CaseFile& file) {
 
 namespace {
 
-/// Whether what was laid is of the case and of the files as they are now. @param note  laid.json
+/// Whether the laid path is of the case and of the files as they are now. @param note  laid.json
 bool is_of_now(const CaseFile& file, const Json& note) {
   if (!note.is_object() || note.value("case_sha256", "") != case_revision(file.file)) return false;
   const Json inputs = note.value("inputs", Json::object());
@@ -397,8 +398,8 @@ Json Calls::scan(const Json&) {
 
 const Calls::Found& Calls::found_in(const CaseFile& file) {
   const SegmentationSettings& settings = file.settings.segmentation;
-  const bool is_drawn = !file.inputs.ct_labels.empty();  // read each time: it may lie in several files
-  if (!is_drawn) static_cast<void>(ct_of(file));         // likewise the CT, where it was changed
+  const bool is_drawn = !file.inputs.ct_labels.empty();  // read each time: it may consist of several files
+  if (!is_drawn) static_cast<void>(ct_of(file));         // likewise the CT, if it has changed
   const std::string key = is_drawn ? std::string() : ct_key_ + to_json(settings).dump();
   if (!key.empty() && key == found_key_) return found_;
   found_key_.clear();
@@ -460,7 +461,7 @@ Json Calls::room(const Json& arguments) {
     for (const Vec3& place : ring) json["on_cut_face"].push_back(is_cut(place) ? 1 : 0);
     json["painted"] = std::ranges::count_if(ring, [&](const Vec3& place) { return skin.is_painted(place); });
     json["fits"] = std::ranges::none_of(ring, is_cut) && std::ranges::none_of(edge.points, is_cut);
-  } catch (const CaseError& error) {  // an answer, too: this margin, or this edge, does not fit
+  } catch (const CaseError& error) {  // also an answer: this margin, or this edge, does not fit
     json["problem"] = sentence(error.problem());
   }
   return json;
@@ -551,7 +552,7 @@ void Calls::show_moment(const std::string& cut, const TissueModel& model, const 
   last_moment_ = now;
   try {
     send_moment(cut, model, progress.state);
-  } catch (const std::exception& error) {  // no room for its arrays: a cut does not end for want of a picture
+  } catch (const std::exception& error) {  // no memory for its arrays: a cut does not end because a picture is missing
     shows_moments_ = false;
     monitor_.message(Severity::Warning, fmt::format("{}. The cut continues without pictures", error.what()));
   }

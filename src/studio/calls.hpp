@@ -20,32 +20,32 @@
 
 namespace incise::studio {
 
-/// Where `lay` puts a path of that kind and its program on the measured tissue. It goes when the case is run or
-/// registered anew.
+/// Returns the folder to which `lay` writes a path of that kind on the measured tissue, and its program. It is removed
+/// when the case is run or registered again.
 [[nodiscard]] std::filesystem::path laid_folder(const CaseFile& file, PathKind kind);
-/// Removes what was laid of both kinds. @throws DataError for somebody else's folder.
+/// Removes the laid paths of both kinds. @throws DataError for a folder that is not incise's own.
 void remove_laid(const CaseFile& file);
-/// The same where the case is not the one that it was made of.
+/// Removes laid paths that were made from another state of the case.
 void remove_stale_laid(const CaseFile& file);
 
-/// What a browser asks for, each a few calls of the library: see docs/decisions/0009-studio.md. The state is in the
-/// case folder; only the CT that was read last, and the tissue that was found last, are kept.
+/// The browser's requests; each makes a few calls of the library: see docs/decisions/0009-studio.md. The state is in
+/// the case folder; only the CT read last and the tissue found last are kept in memory.
 class Calls {
  public:
   using Json = nlohmann::ordered_json;
-  /// Callbacks for what a Monitor does not report.
+  /// Callbacks for events that a Monitor does not report.
   struct Watchers {
-    std::function<void(const std::string&)> on_part;  ///< the cut of a run that is under way: "pass 2 of at most 3"
+    std::function<void(const std::string&)> on_part;  ///< the current cut of a run: "pass 2 of at most 3"
     std::function<void(const Json&)> on_moment;       ///< the event `moment` of docs/decisions/0009-studio.md
   };
   Calls(const std::filesystem::path& blobs, Monitor& monitor, Watchers watchers);
 
   /// Makes the call of that name. @param file  the case; empty: none is open.
-  /// @throws CaseError for an unknown call or arguments that it cannot use; whatever the library throws.
+  /// @throws CaseError for an unknown call or for arguments that it cannot use; whatever the library throws.
   [[nodiscard]] Json make(const std::string& name, const std::filesystem::path& file, const Json& arguments);
 
  private:
-  /// @throws StaleRevision where the caller means another case than the one that is open.
+  /// @throws StaleRevision if the caller refers to another case than the open one.
   void require_open(const Json& arguments) const;
   Json open(const Json& arguments);
   Json create(const Json& arguments);
@@ -72,10 +72,11 @@ class Calls {
   Json report(const Json& arguments);
 
   [[nodiscard]] RunContext context(std::uint64_t seed = 1) const;
-  /// Cautions that a person accepts, of the case as it is. @throws StaleRevision for those of another revision.
+  /// Returns the cautions that a person accepts for the current case. @throws StaleRevision for those of another
+  /// revision.
   [[nodiscard]] std::vector<std::string> accepted_in(const Json& arguments) const;
   [[nodiscard]] const CtVolume& ct_of(const CaseFile& file);
-  /// The tissue that a case's settings find in its scan or labels, its skin, and what the labels' values are.
+  /// The tissue found in a case's scan or labels by its settings, its skin, and the meanings of the labels' values.
   struct Found {
     Segmentation tissue;
     TriMesh skin;
@@ -84,7 +85,8 @@ class Calls {
   [[nodiscard]] const Found& found_in(const CaseFile& file);
   /// The skin of a case's specimen at rest.
   [[nodiscard]] PlacedSkin skin_at_rest(const CaseFile& file);
-  /// A case of what cannot be read is of no use. @param is_made_later  its mesh. @throws DataError
+  /// Refuses a case whose files cannot be read. @param is_made_later  true: its mesh does not exist yet.
+  /// @throws DataError
   void require_readable(const CaseFile& made, bool is_made_later);
   /// Runs the case up to a stage, in its own output folder.
   [[nodiscard]] Study study_until(Stage until);
@@ -96,10 +98,10 @@ class Calls {
   Watchers watchers_;
   Workers workers_{0};
   std::filesystem::path file_;  ///< of the case
-  std::string ct_key_;          ///< which CT is kept: its place, how it was read, and when it was changed
+  std::string ct_key_;          ///< identifies the kept CT: its place, how it was read, and when it was changed
   CtVolume ct_;
-  Verdict of_scan_;        ///< what check_scan says of it
-  std::string found_key_;  ///< in which case file, of which content, and in which scan or labels
+  Verdict of_scan_;        ///< result of check_scan
+  std::string found_key_;  ///< identifies found_: case file, its content, and scan or labels
   Found found_;
   std::chrono::steady_clock::time_point last_moment_{};
   double moment_cost_s_ = 0.0;  // of the last picture

@@ -7,7 +7,7 @@
 namespace incise::studio {
 namespace {
 
-/// A word of a command line, as a shell takes it.
+/// Returns a word of a command line, quoted for a shell.
 std::string word(const std::string& text) {
   const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || std::string_view("_-./=,:").find(static_cast<char>(c)) != std::string_view::npos;

@@ -58,7 +58,7 @@ std::optional<fs::path> canonical_of(const fs::path& path) {
   return failed ? std::nullopt : std::optional(canonical);
 }
 
-/// The name as JSON holds it: bytes that are not UTF-8 would end the answer.
+/// Returns the name as valid JSON text: bytes that are not UTF-8 would end the answer.
 std::string shown(const fs::path& name) {
   return Json::parse(Json(name.string()).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
 }

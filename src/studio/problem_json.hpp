@@ -8,7 +8,7 @@
 
 namespace incise::studio {
 
-/// A problem as the interface gives it. @param message  the whole sentence.
+/// Returns a problem in the interface's form. @param message  the whole sentence.
 inline nlohmann::ordered_json problem_json(const Problem& problem, const std::string& message) {
   return {{"path", problem.path},
           {"found", problem.found},

@@ -41,10 +41,10 @@ namespace {
 constexpr std::uint64_t kLargestBody = 4U << 20;
 constexpr std::uint32_t kLargestHeader = 8U << 10;
 constexpr int kMostConnections = 64;
-constexpr std::chrono::seconds kSilence{30};    // of a connection, after which it is closed
-constexpr std::chrono::seconds kFirstSilence(5);  // of a connection that has not asked yet
+constexpr std::chrono::seconds kSilence{30};    // after which a silent connection is closed
+constexpr std::chrono::seconds kFirstSilence(5);  // the same before its first request
 constexpr std::chrono::seconds kHeartbeat{15};  // of the stream of events
-constexpr std::size_t kMostEvents = 1000;       // that wait for a reader; older ones are dropped
+constexpr std::size_t kMostEvents = 1000;       // greatest number that waits for a reader; older ones are dropped
 
 using Request = http::request<http::string_body>;
 using Response = http::response<http::string_body>;
@@ -63,7 +63,7 @@ void remove_abandoned_folders(const fs::path& where) {
   }
 }
 
-/// The folder for the arrays of results: made for this process alone, and gone with it.
+/// The folder for the arrays of results: made for this process alone, and removed with it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -98,7 +98,7 @@ std::string bytes_from_hex(const std::string& digits) {
   return bytes;
 }
 
-/// What the page may do: run its own modules, the one import map in it, and ask this server.
+/// The page's permissions: run its own modules and its one import map, and send requests to this server.
 std::string content_policy() {
   const EmbeddedFile* page = find_embedded(page::files(), "index.html");
   INCISE_REQUIRE(page != nullptr, "expected the page");
@@ -179,7 +179,7 @@ class Server {
       boost::system::error_code failed;
       Tcp::socket socket = co_await acceptor_.async_accept(asio::redirect_error(asio::use_awaitable, failed));
       if (failed == asio::error::operation_aborted) co_return;
-      if (failed) {  // no file descriptors left, say: later there may be
+      if (failed) {  // no file descriptors left, for example: there may be some later
         asio::steady_timer pause(io_, std::chrono::milliseconds(100));
         co_await pause.async_wait(asio::use_awaitable);
         continue;
@@ -187,13 +187,13 @@ class Server {
       if (connections_ >= kMostConnections) continue;  // closes it
       ++connections_;
       boost::system::error_code ignored;
-      socket.set_option(Tcp::no_delay(true), ignored);  // a header goes at once, not with what follows it
+      socket.set_option(Tcp::no_delay(true), ignored);  // a header is sent at once, not with the next part
       asio::co_spawn(io_, converse(beast::tcp_stream(std::move(socket))),
                      [this](std::exception_ptr) { --connections_; });
     }
   }
 
-  /// Answers the requests of a connection, one after the other. Whatever breaks it ends it.
+  /// Answers the requests of a connection, one after the other. Any failure ends the connection.
   asio::awaitable<void> converse(beast::tcp_stream stream) {
     beast::flat_buffer buffer;
     bool is_first = true;
@@ -233,8 +233,8 @@ class Server {
     }
   }
 
-  /// Reads what is still on its way and drops it: a connection that is closed over unread bytes is reset, and its other
-  /// end may lose the answer.
+  /// Reads and drops what is still arriving: a connection closed with unread bytes is reset, and its other end may lose
+  /// the answer.
   asio::awaitable<void> drain(beast::tcp_stream& stream) {
     std::string dropped(65536, '\0');
     const asio::mutable_buffer room = asio::buffer(dropped);
@@ -278,7 +278,7 @@ class Server {
     http::serializer<false, Body> serializer(response);
     boost::system::error_code failed;
     while (!failed && !serializer.is_done()) {
-      stream.expires_after(kSilence);  // of the reader
+      stream.expires_after(kSilence);  // if the reader is silent
       co_await http::async_write_some(stream, serializer, asio::redirect_error(asio::use_awaitable, failed));
     }
     if (failed || !response.keep_alive()) {
@@ -396,7 +396,7 @@ class Server {
       else
         json["case_problem"]["message"] = std::move(shown.content);
     }
-    json["case"] = shown_case_;  // as it was last: what is computed now may take long
+    json["case"] = shown_case_;  // as last read: computing it now may take long
     json["running"] = running_json();
     co_return json;
   }
@@ -406,7 +406,7 @@ class Server {
     return files_.path_of(id.get<std::string>(), field).string();
   }
 
-  /// The case file of a call `open`: within the roots, wherever links lead.
+  /// Returns the case file of a call `open`: within the roots, wherever links lead.
   [[nodiscard]] std::string case_file_at(const Json& arguments) {
     const fs::path named = arguments.value("file", std::string());
     if (named.empty()) throw CaseError("request", "file", "nothing", "the id of a file");
@@ -414,7 +414,7 @@ class Server {
     return files_.path_of(files_.id_of(file), "file").string();
   }
 
-  /// Files that a call names by their ids, as paths.
+  /// Replaces the ids of files in a call by their paths.
   void translate_files(Json& arguments) const {
     for (const char* name :
          {"file", "folder", "scan", "labels", "mesh", "surface", "camera", "color", "depth", "intrinsics"}) {
@@ -426,7 +426,7 @@ class Server {
     for (auto& [key, id] : arguments.at("files").items()) id = path_of(id, key);
   }
 
-  /// The arguments of a call; null: no JSON, or nested so deep that handling it would take the stack.
+  /// Returns the arguments of a call; null: not JSON, or nested so deep that it would exhaust the stack.
   static Json parsed(const std::string& body) {
     constexpr int kDeepest = 32;
     bool is_too_deep = false;
@@ -470,19 +470,19 @@ class Server {
     return Json::object();
   }
 
-  /// Calls of the desk that write into the case's output folder, which only one process may at a time.
+  /// Whether a call of the desk writes into the case's output folder, which only one process may do at a time.
   static bool makes_output(const std::string& name) {
     static const std::set<std::string> names{"body", "stretch", "plan", "virtual_cloud", "register"};
     return names.contains(name);
   }
-  /// Calls of the other worker: they compute what a run does, or take it up.
+  /// Whether a call belongs to the other worker: such calls compute what a run does, or use its results.
   static bool is_of_a_run(const std::string& name) { return name == "run" || name == "lay"; }
 
   static CallOutcome refused_during_a_run() {
     return {CallOutcome::Kind::Problem, problem_json({}, "A run is under way. Wait for its end, or stop it.")};
   }
 
-  /// Makes a call; what goes wrong on the way to a worker is an outcome, too.
+  /// Makes a call; a failure on the way to a worker is an outcome, too.
   asio::awaitable<CallOutcome> outcome_of(std::string name, Json arguments) {
     const bool is_run = is_of_a_run(name), is_counted = makes_output(name);
     if ((is_counted || is_run) && !runner_.running().empty()) co_return refused_during_a_run();
@@ -543,7 +543,7 @@ class Server {
   FileIds files_;
   const std::string policy_;
   std::string case_file_;
-  Json shown_case_;            ///< as it was last read; null: not yet
+  Json shown_case_;            ///< as last read; null: not yet
   int desk_makes_output_ = 0;  ///< calls of the desk that write into the output folder
   std::list<Listener> listeners_;
   WorkerProcess desk_, runner_;

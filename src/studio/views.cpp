@@ -106,7 +106,8 @@ std::vector<std::uint8_t> cut_triangles(const MadeSkin& made, std::span<const Ve
   return cut;
 }
 
-/// A constraint as a case file has it: without what was left out there, and without the words that a result adds.
+/// Returns a constraint as in a case file: without fields that were left out there, and without words that a result
+/// adds.
 Json as_written(const Constraint& constraint) {
   Json json = to_json(constraint);
   json["kind"] = names_of(constraint)[constraint.index()];
@@ -121,7 +122,7 @@ Json as_written(const Constraint& constraint) {
 
 namespace {
 
-/// How far a constraint pulls, as a share of the body's length along the pull; nothing where it pulls nothing.
+/// Returns the pull of a constraint as a share of the body's length along the pull; nothing without a pull.
 std::optional<double> share_of_length(const Constraint& constraint, std::span<const Vec3> at_rest) {
   const auto* const pulled = std::get_if<DisplacedConstraint>(&constraint);
   if (pulled == nullptr || pulled->displacement_mm.isZero()) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<double> share_of_length(const Constraint& constraint, std::span<co
   return pulled->displacement_mm.norm() / along.dot(high - low);
 }
 
-/// Where to begin with it is a matter of judgement: no law of the tissue has a limit there.
+/// The threshold of this note is a matter of judgement: no law of the tissue has a limit there.
 Json note_on_pull(const std::optional<double>& share) {
   constexpr double kMuch = 0.25;
   if (!share || *share <= kMuch) return nullptr;

@@ -25,7 +25,7 @@ void on_stop(int) {
   g_must_stop = 1;
 }
 
-/// The way back to the server: standard output as it was when the worker began.
+/// The connection to the server: standard output as it was when the worker began.
 class Answers {
  public:
   Answers() : out_(::dup(STDOUT_FILENO)) { ::dup2(STDERR_FILENO, STDOUT_FILENO); }
@@ -81,7 +81,7 @@ class WorkerMonitor : public Monitor {
         {{"stage", stage}, {"part", part_}, {"fraction", fraction}, {"left_s", left ? Json(*left) : Json(nullptr)}});
   }
   [[nodiscard]] bool is_cancelled() const override { return g_must_stop != 0; }
-  /// Of a call that has several alike. @param part  empty: the call as a whole.
+  /// Sets the part of a call that consists of several similar ones. @param part  empty: the call as a whole.
   void set_part(const std::string& part) { part_ = part; }
 
  private:
@@ -132,7 +132,7 @@ int run_worker(const std::filesystem::path& blobs) {
   for (std::string line; std::getline(std::cin, line);) {
     monitor.set_part("");
     answer(calls, answers, line);
-    g_must_stop = 0;  // not before: a stop may come as early as its call
+    g_must_stop = 0;  // not earlier: a stop may arrive together with its call
   }
   return 0;
 }

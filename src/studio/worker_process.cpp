@@ -38,7 +38,7 @@ Pipe new_pipe() {
   return {ends[0], ends[1]};
 }
 
-/// An end of a pipe that only the child keeps.
+/// The end of a pipe that only the child keeps.
 class End {
  public:
   explicit End(int file) : file_(file) {}
@@ -60,7 +60,7 @@ pid_t spawn(const std::vector<std::string>& command, int in, int out) {
   ::posix_spawn_file_actions_adddup2(&files, out, STDOUT_FILENO);
   ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1);  // sockets: Asio 1.74 leaves them open
   posix_spawnattr_t attributes;  // a process group of its own: Ctrl-C at the terminal is for the server
-  sigset_t until_it_listens;     // a stop that comes before the worker has its handler waits for it
+  sigset_t until_it_listens;     // a stop that arrives before the worker has its handler is delivered later
   ::sigemptyset(&until_it_listens);
   ::sigaddset(&until_it_listens, SIGINT);
   ::posix_spawnattr_init(&attributes);
@@ -89,8 +89,8 @@ std::string end_of(pid_t pid) {
 struct WorkerProcess::Child {
   explicit Child(asio::io_context& io) : in(io), out(io), has_line(io) {}
   pid_t pid = -1;
-  asio::posix::stream_descriptor in;   ///< what it reads
-  asio::posix::stream_descriptor out;  ///< what it writes
+  asio::posix::stream_descriptor in;   ///< its standard input
+  asio::posix::stream_descriptor out;  ///< its standard output
   std::deque<std::string> lines;
   asio::steady_timer has_line;
   bool is_closed = false;
@@ -105,7 +105,7 @@ WorkerProcess::~WorkerProcess() {
   boost::system::error_code ignored;
   child_->in.close(ignored);  // an idle worker ends
   child_->out.close(ignored);
-  ::kill(child_->pid, SIGINT);  // one that computes leaves its checkpoint
+  ::kill(child_->pid, SIGINT);  // a busy worker leaves its checkpoint
   static_cast<void>(end_of(child_->pid));
 }
 
@@ -135,7 +135,7 @@ asio::awaitable<void> WorkerProcess::write_lines(std::shared_ptr<Child> child) {
     const std::string line = std::move(child->lines.front());
     child->lines.pop_front();
     co_await asio::async_write(child->in, asio::buffer(line), asio::redirect_error(asio::use_awaitable, failed));
-    if (failed) co_return;  // the reader sees its end
+    if (failed) co_return;  // the reader notices the end
   }
 }
 
@@ -152,7 +152,7 @@ asio::awaitable<void> WorkerProcess::read_lines(WorkerProcess* self, std::shared
   }
   child->is_closed = true;
   child->has_line.cancel();
-  ::kill(child->pid, SIGKILL);  // it has closed its end, or sends what is no line
+  ::kill(child->pid, SIGKILL);  // it has closed its end, or sends invalid lines
   const std::string end = end_of(child->pid);
   self->child_.reset();
   self->end_all(

@@ -17,14 +17,14 @@
 
 namespace incise::studio {
 
-/// What came of a call: the last line of a worker, or that the worker has ended.
+/// Outcome of a call: the last line of a worker, or the end of the worker.
 struct CallOutcome {
   enum class Kind { Result, Problem, Stale, Stopped, Crashed };
   Kind kind = Kind::Crashed;
-  nlohmann::ordered_json content;  ///< Result, Problem, Stale (the case was changed): an object; else a sentence
+  nlohmann::ordered_json content;  ///< Result, Problem, Stale (the case has changed): an object; else a sentence
 };
 
-/// A call that is being made, as the call `state` lists it.
+/// A running or waiting call, as the call `state` lists it.
 struct RunningCall {
   std::string call;
   std::string stage;
@@ -32,22 +32,22 @@ struct RunningCall {
   nlohmann::ordered_json left_s;
 };
 
-/// A worker as a child process. It is started when first needed, and restarted after it has ended.
+/// A worker as a child process. It is started when first needed, and again after it has ended.
 class WorkerProcess {
  public:
-  /// @param command  the program and its arguments.  @param on_event  called with the kind (progress, message, moment)
-  /// and content of each line that ends no call, with the name of its call.
+  /// @param command  the program and its arguments. @param on_event  called for each line that ends no call, with its
+  /// kind (progress, message, moment) and its content, to which the name of its call is added.
   WorkerProcess(boost::asio::io_context& io, std::vector<std::string> command,
                 std::function<void(const std::string& kind, nlohmann::ordered_json content)> on_event);
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
-  /// Makes a call after those that were made before it. Suspends until it has ended.
+  /// Makes a call after the earlier calls. Suspends until it has ended.
   boost::asio::awaitable<CallOutcome> call(std::string name, std::string case_file, nlohmann::ordered_json arguments);
-  /// Asks the call that is under way to stop.
+  /// Asks the running call to stop.
   void stop();
-  /// The calls that were made and have not ended, the one under way first.
+  /// Returns the calls that have not ended, the running one first.
   [[nodiscard]] std::vector<RunningCall> running() const;
 
  private:

@@ -5,7 +5,7 @@
 namespace incise {
 namespace {
 
-/// x, z, angle of the section, moment.
+/// x, z, angle of the section, bending moment.
 using State = Eigen::Vector4d;
 
 State slope(const PlaneBeam& beam, const State& s) {
@@ -35,7 +35,8 @@ std::vector<State> integrate(const PlaneBeam& beam, double clamp_moment, int ste
 }  // namespace
 
 std::vector<Vec2> bent_line(const PlaneBeam& beam, int steps) {
-  // With no moment at the clamp the tip's is positive, with the straight beam's and more it is negative.
+  // Without a moment at the clamp, the moment at the tip is positive; with 1.5 times the straight beam's it is
+  // negative.
   double low = -1.5 * beam.force_mn * beam.length_mm;
   double high = 0.0;
   for (int i = 0; i < 60; ++i) {

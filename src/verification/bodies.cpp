@@ -65,7 +65,7 @@ TetMesh eighth_of_a_sphere(double inner_radius_mm, int n) {
       if (name < 0) {
         name = static_cast<std::int32_t>(mesh.vertices.size());
         const Vec3& p = vertex(block.vertices, tet[c]);
-        // Equal steps of angle make the layers more even than equal steps of the tangent.
+        // Equal steps of angle give more even cells than equal steps of the tangent.
         const double layer = largest(tet[c]);
         const Vec3 direction = (p / layer * (0.25 * units::kPi)).array().tan().matrix().normalized();
         mesh.vertices.push_back(inner_radius_mm * layer / n * direction);
@@ -84,14 +84,14 @@ void add_pressure_outwards(TissueModel& model, double at_mm, double pressure_kpa
     const bool is_there =
         std::all_of(p.begin(), p.end(), [&](const Vec3& x) { return std::abs(x.norm() - at_mm) < kPlaneHalfWidth; });
     if (!is_there) continue;
-    // The face's normal looks out of the tissue, into the cavity; pressure pushes against it.
+    // The face's normal points out of the tissue into the cavity; pressure acts against it.
     const Vec3 area = 0.5 * (p[1] - p[0]).cross(p[2] - p[0]);
     for (const VertexId v : face.corners) model.dead_load_mn[v.index()] -= pressure_kpa / 3.0 * area;
   }
 }
 
 TetMesh cooks_panel(int n) {
-  constexpr double kThickness = 1.0;  // mm; plane strain: it does not matter
+  constexpr double kThickness = 1.0;  // mm; does not matter in plane strain
   TetMesh mesh = make_block(Vec3(1.0, 1.0, kThickness), {n, n, 1});
   for (Vec3& p : mesh.vertices) {
     const double x = p[0];

@@ -1,4 +1,4 @@
-// A beam clamped at one end and loaded across the other, bent so little that the linear beam applies.
+// A beam clamped at one end and loaded across the other; it bends so little that linear beam theory applies.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 #include "verification/closed_forms.hpp"
@@ -12,12 +12,12 @@ namespace {
 constexpr double kBeamLength = 100.0;               // mm
 constexpr double kBeamHeight = 10.0;                // mm
 constexpr double kEndTraction = -1e-4;              // kPa: a tip displacement near 1e-3 of the height
-constexpr double kTipRateTolerance = 0.2;           // the clamped corners, which the beam does not know, cost some
-constexpr double kTipTolerance = 0.005;             // of the tip: Saint-Venant's end zone over the length
+constexpr double kTipRateTolerance = 0.2;           // the clamped corners, absent from beam theory, reduce the order
+constexpr double kTipTolerance = 0.005;             // of the tip displacement: Saint-Venant's end zone over the length
 const std::vector<int> kCellsOverHeight{4, 8, 16};  // over the height
 
-/// Tip displacement with n cells over the height and half as many per length. At ν = 0 nothing happens across the
-/// width, so one layer of cells between planes of symmetry is the whole beam.
+/// Returns the tip displacement with cubic cells, n over the height. At ν = 0 nothing changes across the width, so one
+/// layer of cells between planes of symmetry represents the whole beam.
 double computed_tip_mm(const CheckContext& context, int n) {
   Material material;
   material.poissons_ratio = 0.0;

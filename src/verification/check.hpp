@@ -6,7 +6,7 @@
 
 namespace incise {
 
-/// What a check is given. The monitor passes on the wish to stop and nothing else.
+/// Context of a check. The monitor only passes on a request to stop.
 struct CheckContext {
   Workers& workers;
   Monitor& monitor;
@@ -18,26 +18,27 @@ class NotSolved : public Error {
   using Error::Error;
 };
 
-/// Of the loads or reactions. Where strains are small, rounding of the positions allows no less.
+/// Tolerances of the equilibrium, relative to loads or reactions. At small strains, rounding of the positions prevents
+/// a tighter one.
 inline constexpr double kTightTolerance = 1e-10;
 inline constexpr double kSmallStrainTolerance = 1e-7;
 
-/// Static equilibrium to nearly rounding. @throws NotSolved naming the outcome; Cancelled.
+/// Returns the static equilibrium, nearly to rounding. @throws NotSolved, with the outcome; Cancelled.
 [[nodiscard]] StaticResult solved(const CheckContext& context, const TissueModel& model,
                                   const TissueState* start = nullptr, double relative_tolerance = kTightTolerance);
 
-/// An extrapolated value says little where the meshes it is made from are far off: the finest must be close by itself.
-/// @param relative_error  of the finest mesh. @throws NotSolved above `bound`, so that the check fails.
+/// Requires that the finest mesh is close by itself: an extrapolated value means little if its meshes are far off.
+/// @param relative_error  of the finest mesh. @throws NotSolved above `bound`; the check then fails.
 void require_small_error(double relative_error, double bound);
 
-/// The mean first Piola stress of a body in equilibrium, kPa, from the forces that hold it: P = (1/V) Σ t ⊗ X over its
-/// vertices (theorem of mean stress). Uses nodal forces only, so it judges what the solver sees.
+/// Returns the mean first Piola stress, kPa, of a body in equilibrium from the forces that hold it: P = (1/V) Σ t ⊗ X
+/// over its vertices (theorem of mean stress). Uses only nodal forces, so it tests what the solver uses.
 [[nodiscard]] Mat3 mean_stress_kpa(const CheckContext& context, const TissueModel& model, const TissueState& state);
 
-/// "corotational", "stable Neo-Hookean, averaged volume", …
+/// Returns "corotational", "stable Neo-Hookean, averaged volume", …
 [[nodiscard]] std::string law_text(const Material& material);
 
-/// A check with its fixed texts; the rest is filled in by the function that makes it.
+/// Returns a check with its fixed texts, expected value and tolerance; the caller fills in the rest.
 [[nodiscard]] VerificationCheck described(std::string what, std::string source, std::string unit, double expected,
                                           double tolerance);
 

@@ -9,7 +9,8 @@ namespace {
 
 constexpr int kBisections = 200;  // far more than the bits of a double
 
-/// The point of [low, high] where f changes its sign. @pre f(low) and f(high) differ in sign.
+/// Returns the point of [low, high] where f changes sign. @throws InvalidArgument unless f(low) and f(high) differ in
+/// sign.
 template <class F>
 double root(double low, double high, const F& f) {
   const bool is_low_positive = f(low) > 0.0;

@@ -16,7 +16,7 @@
 namespace incise {
 namespace {
 
-constexpr double kPanelTraction = 2e-3;  // kPa, upwards: strains near 1e-4, so that linear elasticity applies
+constexpr double kPanelTraction = 2e-3;  // kPa, upwards: strains near 1e-4, where linear elasticity applies
 constexpr double kPanelRateTolerance = 0.1;
 const std::vector<int> kPanelCells{16, 32, 64};
 constexpr int kReferenceCells = 32;  // quadratic elements each way; the coarser two of its meshes have 8 and 16
@@ -44,7 +44,7 @@ double panel_reference_tip_mm(const Material& material) {
 VerificationCheck cooks_membrane_rate(const CheckContext& context) {
   Material material;
   material.poissons_ratio = 0.3;
-  // The upper left corner, 90 degrees and the upper edge's rise: the energy there converges with twice its exponent.
+  // The upper left corner: 90 degrees plus the slope of the upper edge. Its energy converges with twice the exponent.
   const double angle = 0.5 * units::kPi + std::atan(16.0 / 48.0);
   const double exponent = corner_exponent(angle, material.poissons_ratio);
   VerificationCheck check = described(

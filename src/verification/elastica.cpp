@@ -1,4 +1,4 @@
-// A slender beam whose tip force bends it by some sixty degrees: large rotations, small strains.
+// A slender beam that a tip force bends by about sixty degrees: large rotations, small strains.
 #include "verification/beam_in_the_plane.hpp"
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
@@ -16,7 +16,7 @@ constexpr double kStripLength = 100.0;     // mm
 constexpr double kStripHeight = 4.0;       // mm
 constexpr double kLoad = 3.0;         // F L² / E I
 constexpr double kDropTolerance = 0.005;  // of the length
-constexpr double kFinestDropError = 0.01;  // of the drop: what the finest mesh itself may be off
+constexpr double kFinestDropError = 0.01;  // of the drop: greatest allowed error of the finest mesh
 const std::vector<int> kStripCells{4, 8, 16};
 constexpr int kCellsAlongPerCell = 16;
 
@@ -36,8 +36,8 @@ struct Bent {
   CheckCurve line;  // centre line, in lengths
 };
 
-/// The rest state laid along the beam's line, sections across it: Newton starts there, since a slender body finds its
-/// way from rest only in many small steps. Where it ends is decided by the balance of forces alone.
+/// Returns the body laid along the beam's bent line, sections across it. Newton starts from this state, because from
+/// rest a slender body would need many small steps. The result depends only on the balance of forces.
 TissueState bent_as_the_beam(const TissueModel& model, int n) {
   const int cells = kCellsAlongPerCell * n;
   const std::vector<Vec2> line = bent_line(beam_per_width(), cells);
@@ -51,8 +51,8 @@ TissueState bent_as_the_beam(const TissueModel& model, int n) {
   return state;
 }
 
-/// At ν = 0 nothing happens across the width: one layer of cells is the whole beam. Cells are 12.5/8 times as long as
-/// high.
+/// At ν = 0 nothing changes across the width: one layer of cells represents the whole beam. Cells are 12.5/8 times as
+/// long as high.
 Bent bend(const CheckContext& context, int n) {
   Material material;
   material.poissons_ratio = 0.0;

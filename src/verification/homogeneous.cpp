@@ -1,4 +1,4 @@
-// States of uniform strain up to 50 %, for which linear tets are exact: only the law is judged.
+// States of uniform strain up to 50 %, for which linear tets are exact: they test only the law.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 #include "verification/closed_forms.hpp"
@@ -17,7 +17,7 @@ constexpr double kShearTolerance = 1e-10;
 const Vec3 kBarSize(40, 20, 20);  // mm
 const std::vector<double> kStrains{0.05, 0.1, 0.2, 0.3, 0.4, 0.5};
 
-/// Largest distance of a vertex from diag(stretches) X, over the longest side.
+/// Returns the largest distance of a vertex from diag(stretches) X, relative to the longest side.
 double distance_from(const TissueModel& model, const TissueState& state, const Vec3& stretches) {
   double worst = 0.0;
   for (std::size_t v = 0; v < state.positions.size(); ++v) {
@@ -35,8 +35,8 @@ CheckCurve closed_form_curve(const std::function<double(double)>& stress) {
   return curve;
 }
 
-/// Pulls a block with dead tractions of the closed form's stress along `axes`, and compares every vertex with its
-/// place.
+/// Pulls a block along its first `axes` axes with dead tractions equal to the stress in closed form, and compares every
+/// vertex with its place.
 VerificationCheck pulled(const CheckContext& context, const Material& material, int axes, const char* name,
                          const std::function<Vec3(double)>& stretches_at) {
   VerificationCheck check = described(

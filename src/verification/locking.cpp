@@ -1,4 +1,4 @@
-// Nearly incompressible tissue on a coarse mesh: the standard linear tet locks, the averaged volume must not.
+// Nearly incompressible tissue on a coarse mesh: the standard linear tet locks; tets with averaged volume must not.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 #include "verification/cooks_panel_tip.hpp"
@@ -13,7 +13,7 @@ namespace {
 constexpr double kPoissonsRatio = 0.49;
 constexpr double kLockedPercent = 15.0;
 constexpr double kFreeShare = 0.03;             // of the reference
-const std::vector<int> kMeshes{8, 16, 24, 36};  // cells each way; both are judged on the last
+const std::vector<int> kMeshes{8, 16, 24, 36};  // cells each way; both checks use the last
 
 Material nearly_incompressible(MaterialModel model, VolumeTreatment volume) {
   Material material;
@@ -32,7 +32,7 @@ CheckCurve tips(const CheckContext& context, const Material& material) {
   return curve;
 }
 
-/// Both treatments of the volume on all meshes, and the reference: what both checks show.
+/// Fills in plot and note, the same for both checks: both treatments of the volume on all meshes, and the reference.
 void draw(VerificationCheck& check, MaterialModel model, double reference_um, const CheckCurve& standard,
           const CheckCurve& averaged) {
   const double last = kMeshes.back();

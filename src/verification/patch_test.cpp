@@ -1,4 +1,4 @@
-// A linear displacement is a state of uniform stress, whatever the mesh: no vertex inside may feel a force.
+// A linear displacement is a state of uniform stress on any mesh: the force on every inner vertex must be 0.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 
@@ -18,7 +18,7 @@ Mat3 gradient(double share) {
   return Mat3::Identity() + share * g;
 }
 
-/// Largest force on an inner vertex over the largest on the boundary, with every vertex at F X.
+/// Returns the largest force on an inner vertex over the largest on the boundary, with every vertex at F X.
 double inner_force_share(const CheckContext& context, const TissueModel& model, const Mat3& f) {
   TissueState state = rest_state(model);
   for (Vec3& p : state.positions) p = f * p;
@@ -33,7 +33,7 @@ double inner_force_share(const CheckContext& context, const TissueModel& model, 
   return inner / outer;
 }
 
-/// Largest distance of a solved vertex from F X, over the body's length.
+/// Returns the largest distance of a vertex in equilibrium from F X, over the body's length.
 double position_error(const CheckContext& context, TissueModel& model, const Mat3& f) {
   prescribe_boundary(model, f);
   const StaticResult result = solved(context, model, nullptr, 1e-13);

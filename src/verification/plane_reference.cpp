@@ -100,7 +100,7 @@ double panel_tip_mm(const PanelProblem& problem, int n) {
         }
       }
     }
-    // Simpson's weights of a quadratic edge.
+    // Simpson's weights on a quadratic edge.
     const double edge = problem.traction_kpa * 16.0 / n;
     load[unknown(2 * n, 2 * ej, 1)] += edge / 6.0;
     load[unknown(2 * n, 2 * ej + 1, 1)] += 4.0 * edge / 6.0;

@@ -10,13 +10,13 @@
 namespace incise {
 namespace {
 
-constexpr double kShear = 1e-4;                // small: the closed form is that of linear viscoelasticity
+constexpr double kShear = 1e-4;                // small, because the closed form is linear viscoelasticity
 constexpr double kStep = 0.05;                 // s
 constexpr int kSteps = 40;                     // four relaxation times
-constexpr double kRelaxationTolerance = 1e-6;  // the step rule is exact; what is left is of the order of the strain
+constexpr double kRelaxationTolerance = 1e-6;  // the step rule is exact; the error is of the order of the strain
 constexpr PronyTerm kTerm{1.5, 0.5};
 
-/// Shear stress at the end of a step, kPa: elastic and viscous forces on the boundary, as a mean over the body.
+/// Returns the mean shear stress of the body at the end of a step, kPa, from the elastic and viscous forces.
 double shear_stress_kpa(const CheckContext& context, const TissueModel& model, TissueState& state) {
   Points forces(state.positions.size(), Vec3::Zero());
   add_elastic_response(model, state, forces, nullptr, context.workers);
@@ -44,7 +44,7 @@ VerificationCheck relaxation_of_one_prony_term(const CheckContext& context) {
   const auto closed_form = [](double t) { return 1.0 + kTerm.shear_share * std::exp(-t / kTerm.time_s); };
   CheckCurve marks{"computed", {}, {}, false};
   for (int step = 0; step < kSteps; ++step) {
-    // The step rule puts a strain that changes within a step at its middle.
+    // The step rule places a change of strain within a step at the middle of the step.
     marks.x.push_back((step + 0.5) * kStep);
     marks.y.push_back(shear_stress_kpa(context, model, state) / scale);
     end_viscous_step(model, state, kStep, context.workers);

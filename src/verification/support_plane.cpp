@@ -1,5 +1,4 @@
-// A block on a rigid platform: it may not sink in, the platform carries what presses on it, and it never holds tissue
-// back.
+// A block on a rigid platform: the block must not sink in, and the platform carries the load but never pulls on tissue.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 
@@ -18,7 +17,7 @@ constexpr double kPenetration = 0.05;       // mm, promised by SupportPlane
 constexpr double kBalanceTolerance = 1e-6;  // of the load: Newton stops at 1e-10
 const Vec3 kSlabGravity(0, 0, -units::kStandardGravityMmS2);
 const std::vector<double> kPressures{1.0, 5.0, 10.0, 20.0};  // kPa, dead loads; near 35 the clamped edge is crushed
-constexpr std::size_t kClamp = 0;                            // places among the constraints
+constexpr std::size_t kClamp = 0;                            // indices of the constraints
 constexpr std::size_t kSupport = 1;
 
 TissueModel pressed_block(double pressure_kpa) {
@@ -28,13 +27,13 @@ TissueModel pressed_block(double pressure_kpa) {
                            kSlabGravity);
 }
 
-/// Weight and pressure, mN: what clamp and platform have to carry.
+/// Returns the load on clamp and platform, mN: weight and pressure.
 double load_mn(double pressure_kpa) {
   const double weight = units::kg_mm3_from_kg_m3(Material{}.density_kg_m3) * kSlabSize.prod() * -kSlabGravity[2];
   return weight + pressure_kpa * kSlabSize[0] * kSlabSize[1];
 }
 
-/// A block clamped at one end on the platform, its other end pulled upwards.
+/// Makes a block on the platform, clamped at one end and pulled upwards at the other.
 TissueModel lifted_block() {
   return make_tissue_model(irregular_block(kSlabSize, {8, 6, 3}, 0.2, 11), {},
                            {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
@@ -106,7 +105,7 @@ VerificationCheck support_pull(const CheckContext& context) {
     marks.x.push_back(model.mesh.vertices[v.index()][0]);
     marks.y.push_back(state.positions[v.index()][2]);
   }
-  // A test of lifting needs tissue that lifts.
+  // The test is meaningless unless the tissue lifts.
   if (!(highest > 1.0))
     throw NotSolved(fmt::format("the block should rise by more than 1 mm, found {:.3g} mm", highest));
   check.note = fmt::format("the underside rises by up to {:.2f} mm", highest);

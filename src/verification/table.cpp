@@ -22,7 +22,7 @@ constexpr std::array<NamedLaw, 4> kLaws{
      {"neo_hookean", MaterialModel::StableNeoHookean, VolumeTreatment::PerTet},
      {"neo_hookean_averaged", MaterialModel::StableNeoHookean, VolumeTreatment::Averaged}}};
 
-/// One entry per law, "patch_corotational" and so on.
+/// Adds one entry per law, "patch_corotational" and so on.
 template <class Check>
 void add_for_each_law(std::vector<CheckEntry>& table, const std::string& name, double poissons_ratio, Check check) {
   for (const NamedLaw& named : kLaws) {
@@ -31,7 +31,7 @@ void add_for_each_law(std::vector<CheckEntry>& table, const std::string& name, d
   }
 }
 
-/// Fibres along x, twice as stiff as what they lie in.
+/// Returns tissue with fibres along x of twice its Young's modulus.
 Material with_fibres() {
   Material material = law(MaterialModel::Corotational, VolumeTreatment::PerTet, 0.45);
   material.fibre_modulus_kpa = 2.0 * material.youngs_modulus_kpa;

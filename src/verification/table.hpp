@@ -11,7 +11,7 @@ struct CheckEntry {
   std::function<VerificationCheck(const CheckContext&)> run;
 };
 
-/// Every check, in the order in which they run.
+/// Returns every check, in the order in which they run.
 [[nodiscard]] const std::vector<CheckEntry>& check_table();
 
 }  // namespace incise

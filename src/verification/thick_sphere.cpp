@@ -13,14 +13,14 @@ constexpr double kInner = 10.0;     // mm
 constexpr double kOuter = 20.0;     // mm
 constexpr double kPressure = 1e-2;  // kPa: strains near 1e-4
 constexpr double kSphereRateTolerance = 0.3;
-constexpr double kSphereTolerance = 0.005;    // of the displacement: what is left after extrapolation
-constexpr double kFinestRadialError = 0.025;  // of the displacement: what the finest mesh itself may be off
+constexpr double kSphereTolerance = 0.005;    // of the displacement, after extrapolation
+constexpr double kFinestRadialError = 0.025;  // of the displacement: greatest allowed error of the finest mesh
 const std::vector<int> kLayers{2, 4, 8};
 
 struct Sphere {
   TissueModel model;
   TissueState state;
-  /// Mean radial displacement of the inner surface, µm.
+  /// Returns the mean radial displacement of the inner surface, µm.
   [[nodiscard]] double inner_um() const {
     double sum = 0.0;
     int count = 0;

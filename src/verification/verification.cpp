@@ -50,7 +50,7 @@ std::vector<VerificationCheck> run_checks(const VerificationSettings& settings, 
   }
   INCISE_REQUIRE(!chosen.empty(),
                  fmt::format("expected the name of a check or the start of one, found '{}'", settings.only));
-  StopOnly inner(monitor);  // a solver inside a check has a progress of its own
+  StopOnly inner(monitor);  // hides the progress of solvers inside a check
   const CheckContext context{workers, inner};
   std::vector<VerificationCheck> checks;
   for (std::size_t i = 0; i < chosen.size(); ++i) {

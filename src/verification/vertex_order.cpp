@@ -1,5 +1,5 @@
-// A tet is the same whichever corner is named first. Rotations taken from a tet's edges know the difference; ours may
-// not.
+// The result must not depend on which corner of a tet is named first, as it does if rotations are taken from a tet's
+// edges.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 
@@ -34,7 +34,7 @@ VerificationCheck vertex_order(const CheckContext& context) {
     line.y.push_back(mean_displacement(model, state, plane_across(0, line.x.back()))[2]);
   }
   check.plot = {"Cantilever under its weight, corners renamed", "x at rest, mm", "mean sag, mm", false, false, {line}};
-  // The even orders, which keep a tet's volume positive, up to those that keep the first face.
+  // Even orders, which keep a tet's volume positive: one for each other corner in first place.
   for (const std::array<std::size_t, 4>& order : {std::array<std::size_t, 4>{2, 3, 0, 1}, {1, 2, 0, 3}, {3, 1, 0, 2}}) {
     const TissueModel other = cantilever(order);
     const TissueState found = solved(context, other).state;

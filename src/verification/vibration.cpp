@@ -1,4 +1,4 @@
-// A bar, clamped at one end, swings along its axis in its first mode: a quarter of a wave fits into it.
+// A bar, clamped at one end, vibrates along its axis in its first mode: its length is a quarter of the wave.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
 
@@ -30,7 +30,7 @@ double period_s() {
   return 4.0 * kRodSize[0] / wave_speed;
 }
 
-/// Tip displacement over time, from the mode's shape at rest.
+/// Returns the tip displacement over one period, after release without velocity in the shape of the mode.
 CheckCurve swing(const CheckContext& context, const TissueModel& model) {
   MotionSettings settings;
   settings.step_s = period_s() / kStepsPerPeriod;
@@ -53,7 +53,7 @@ CheckCurve swing(const CheckContext& context, const TissueModel& model) {
   return curve;
 }
 
-/// Times at which the curve crosses zero, by linear interpolation.
+/// Returns the times at which the curve crosses zero, by linear interpolation.
 std::vector<double> crossings(const CheckCurve& curve) {
   std::vector<double> times;
   for (std::size_t i = 1; i < curve.x.size(); ++i) {

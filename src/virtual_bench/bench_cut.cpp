@@ -17,19 +17,19 @@ namespace incise {
 namespace {
 
 constexpr const char* kCuttingStage = "cutting the virtual specimen";
-constexpr int kKeptSteps = 10;     // for so many the tangent of tissue away from the tool is kept
-constexpr double kLivelyMm = 3.0;  // about the tool's way in these steps: tissue whose tangent is always new
-constexpr int kMoments = 3;        // of a step at which the steam's dose is taken
+constexpr int kKeptSteps = 10;     // steps for which the tangent of tissue away from the tool is kept
+constexpr double kLivelyMm = 3.0;  // from the tool's way in these steps: tissue within it gets a new tangent each time
+constexpr int kMoments = 3;        // of a step, at which the dose of steam is evaluated
 constexpr int kMostSolutions =
-    4;  // per step; one is enough where no vertex had to be held back (what is left over is put right by the next)
+    4;  // per step; one is enough if it moves no vertex too far (the next step corrects the remainder)
 constexpr double kTolerance = 0.1;
-constexpr double kLeastContact = 0.02;  // wet tissue never keeps off altogether
-constexpr double kAheadMm = 15.0;       // skin this far ahead of the tool counts as shoved by it
-constexpr double kBulgeMm = 5.0;        // this far ahead as pushed up by it
-constexpr double kAsideMm = 5.0;        // and this far beside its course
+constexpr double kLeastContact = 0.02;  // wet tissue always keeps some contact
+constexpr double kAheadMm = 15.0;       // ahead of the tool: skin within it counts for the shove
+constexpr double kBulgeMm = 5.0;        // ahead of the tool: skin within it counts for the bulge
+constexpr double kAsideMm = 5.0;        // to either side of the tool's course, for both
 constexpr double kBridgeMm =
     0.5;  // radius: a strip of skin narrower than 1 mm does not hold the plug (as in photographs)
-constexpr double kSettleTolerance = 0.02;
+constexpr double kSettleTolerance = 0.02;  // mm
 // Rosenthal's moving line source in a thick-plate limit: peak rise at distance y is kPeak q / (rho c v y), q power per
 // length.
 const double kPeak = std::sqrt(2.0 / (units::kPi * std::exp(1.0))) / 2.0;
@@ -101,7 +101,8 @@ class Cut {
         slip_mm_s_(mesh_.tets.size(), 0.0) {
     state_ = body.stretched;
     const Specimen& s = body.specimen;
-    // Steam's work per time: the kernel's integral over the immersed needle is pi reach²/3 times its length.
+    // The steam's work per time and volume: the kernel's integral over the immersed needle is pi reach²/3 times the
+    // immersed length.
     const double volume = units::kPi * Electrode::kSteamReachMm * Electrode::kSteamReachMm / 3.0 * kImmersedMm;
     const double work_uj_s = 1e6 * std::max(0.0, power_w - s.lost_power_w) * 0.01 * s.rupture_percent;
     steam_kpa_s_ = work_uj_s / volume;
@@ -139,12 +140,12 @@ class Cut {
   TissueState state_;
   Points before_;
   std::vector<double> dose_kpa_;
-  std::vector<double> slip_mm_s_;  // per tet: speed of the tool against it in the last step; 0: not touched before
+  std::vector<double> slip_mm_s_;  // per tet: tool's speed relative to it when last touched; 0: not touched yet
   std::vector<std::uint8_t> is_on_skin_;
-  std::vector<double> shoves_mm_, bulges_mm_;  // per step that goes ahead
+  std::vector<double> shoves_mm_, bulges_mm_;  // per step in which the tool travels along the skin
   std::vector<double> forces_mn_;
   double steam_kpa_s_ = 0.0;
-  double contact_share_ = 1.0;  // of the time that no arc keeps electrode and tissue apart
+  double contact_share_ = 1.0;  // share of time in which electrode and tissue touch: no arc separates them
   bool is_finite_ = true;
   BenchCut result_;
 };
@@ -153,7 +154,7 @@ std::vector<DragPoint> Cut::drags(const std::vector<std::size_t>& touched, const
   const Specimen& s = body_.specimen;
   std::vector<DragPoint> points;
   for (const std::size_t tet : touched) {
-    // The adhesion's strength bounds the drag: viscosity falls with the speed at which the tool slips past.
+    // The adhesion's strength bounds the drag: viscosity falls with the slip speed.
     const double viscosity = contact_share_ * s.adhesion_kpa_s_mm2 /
                              (1.0 + s.adhesion_kpa_s_mm2 * slip_mm_s_[tet] / s.adhesion_limit_kpa_mm);
     for (const auto& weights : quadrature()) {
@@ -188,7 +189,7 @@ void Cut::dose(const std::vector<std::size_t>& touched, const std::vector<DragPo
     }
     dose_kpa_[tet] += step_s * steam_kpa_s_ * share;
   }
-  // What the drag wears off where it slips.
+  // The work of the drag where the tool slips.
   for (const DragPoint& point : points) {
     dose_kpa_[point.tet] += step_s * point.viscosity_mn_s_mm * slip_mm_s_[point.tet] * slip_mm_s_[point.tet] /
                             body_.tissue->volumes_mm3[point.tet];
@@ -280,7 +281,7 @@ std::vector<std::uint8_t> Cut::lively_tets(const std::vector<TipPose>& way) cons
   return is_lively;
 }
 
-/// The tool is out: half a minute until the photograph, in growing steps.
+/// Lets the tissue come to rest, the tool out: half a minute until the photograph, in growing steps.
 void Cut::settle(Workers& workers, Monitor& monitor) {
   constexpr int kMostSettling = 25;
   const std::vector<std::uint8_t> none(mesh_.tets.size(), 0);

@@ -19,18 +19,18 @@ namespace incise {
 namespace {
 
 constexpr const char* kMakingStage = "making the virtual specimen";
-constexpr double kRingMarginMm = 5.0;  // Paper II-A: where a path is to be expected
+constexpr double kRingMarginMm = 5.0;  // Paper II-A: expected distance of a path from the tumour
 constexpr double kDepthMm = 5.0;
 constexpr double kStretchTolerance = 1e-4;    // of the residual, relative to the reactions
-constexpr std::size_t kSutureConstraint = 1;  // its place in constraints_of
+constexpr std::size_t kSutureConstraint = 1;  // its index in constraints_of
 constexpr double kStiffnessWaveMm = 15.0;
 constexpr double kToughnessWaveMm = 12.0;
-constexpr double kPartedLayerMm = 1.0;  // tissue as thick as the needle parts along one surface
+constexpr double kPartedLayerMm = 1.0;  // thickness of tissue that parts along one surface: the needle's
 constexpr double kVoxelMm = 0.7;        // of the shape when it is meshed
 constexpr int kColumns = 3;             // sub-columns of a voxel across
 constexpr std::uint64_t kFieldStream = 0x5bd1e995ULL;
 
-/// The exact shape as occupancy: nothing of the CT goes into the body.
+/// The exact shape as occupancy: the body does not depend on the CT.
 GrayVolume occupancy_of_shape(const TongueShape& shape) {
   const Box3 box = bounds_mm(shape);
   GrayVolume volume;
@@ -59,7 +59,7 @@ GrayVolume occupancy_of_shape(const TongueShape& shape) {
   return volume;
 }
 
-/// The tumour's edge, moved outwards by the margin: where the mesh has to be fine.
+/// The tumour's edge, moved outwards by the margin: the mesh must be fine there.
 Contour expected_ring(const Phantom& phantom) {
   Contour ring = phantom.tumor_edge;
   for (Vec3& p : ring.points) {
@@ -147,7 +147,7 @@ Material material_of(const Specimen& specimen) {
   return material;
 }
 
-/// Holds and pulls the body until everything in it has relaxed.
+/// Clamps and stretches the body, and relaxes it completely.
 void stretch(BenchBody& body, Workers& workers, Monitor& monitor) {
   const TissueModel& model = *body.tissue;
   StaticSettings settings;
@@ -179,7 +179,7 @@ BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution,
   const auto start = std::chrono::steady_clock::now();
   if (const auto problems = problems_of(specimen); !problems.empty()) throw CaseError("specimen", problems.front());
   PhantomSettings shown = phantom_settings(specimen);
-  shown.spacing_mm = Vec3::Constant(3.0);  // the picture is thrown away: shape and tumour do not depend on it
+  shown.spacing_mm = Vec3::Constant(3.0);  // the CT is not used, and shape and tumour do not depend on its spacing
   const Phantom phantom = make_phantom(shown, monitor);
 
   BenchBody body;

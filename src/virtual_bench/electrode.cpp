@@ -37,7 +37,7 @@ std::vector<std::size_t> tets_in_reach(const TetMesh& mesh, const TissueState& s
   std::vector<std::size_t> found;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     if (state.is_live[t] == 0) continue;
-    // A corner's own distance rules most of the body out; a quadrature point lies within the tet's size of it.
+    // The distance of one corner excludes most of the body: a quadrature point lies within the tet's size of it.
     const Vec3& corner = state.positions[mesh.tets[t][0].index()];
     if (electrode.distance_mm(corner) > reach + 3.0) continue;
     for (const auto& weights : quadrature()) {

@@ -61,7 +61,7 @@ std::vector<std::size_t> LooseParts::beside(std::span<const std::size_t> gone,
         }
         is_loose = is_loose && part.size() <= most;
       }
-      // A part that is too large was looked at up to `most` tets: none of them has to be looked at again.
+      // A tet visited in a search needs no search of its own, even if the search ended early.
       seen.insert(part.begin(), part.end());
       if (is_loose) loose.insert(loose.end(), part.begin(), part.end());
     }

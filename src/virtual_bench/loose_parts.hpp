@@ -9,13 +9,13 @@
 
 namespace incise {
 
-/// Finds what a cut leaves hanging on nothing.
+/// Finds the fragments that a cut has separated from the body.
 class LooseParts {
  public:
-  /// @param is_held  per vertex: held by the holder.
+  /// @param is_held  per vertex: 1 if the holder holds it.
   LooseParts(const TetMesh& mesh, std::vector<std::uint8_t> is_held);
-  /// Live tets of parts next to `gone` that share no face with the rest, hold no held vertex and have fewer than 1 % of
-  /// all tets; ascending.
+  /// Returns the live tets of face-connected parts next to a tet of `gone` that contain no held vertex and at most 1 %
+  /// of all tets; ascending.
   [[nodiscard]] std::vector<std::size_t> beside(std::span<const std::size_t> gone,
                                                 std::span<const std::uint8_t> is_live) const;
 

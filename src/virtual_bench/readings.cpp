@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kReadingStream = 0xc2b2ae35ULL;
 constexpr double kForceNoise = 0.05;       // standard deviation, relative
-constexpr double kElasticityNoise = 0.20;  // likewise
+constexpr double kElasticityNoise = 0.20;  // standard deviation, relative
 constexpr double kElasticityVoxelMm = 2.0;
 
 GrayVolume elasticity_of(const BenchBody& body, Random& random) {

@@ -9,7 +9,7 @@ namespace incise {
 namespace {
 
 constexpr int kVerticesPerAggregate = 140;
-constexpr double kForceFloorMn = 3.0;  // scale of the stopping test where nothing pulls
+constexpr double kForceFloorMn = 3.0;  // least scale of the stopping test
 
 double norm_of(std::span<const Vec3> values) {
   double sum = 0.0;
@@ -31,7 +31,8 @@ Relaxation::Relaxation(const TissueModel& tissue, std::span<const Vec3> position
       drag_sum_(right_side_.size()),
       is_orphan_(right_side_.size(), 0) {}
 
-/// The mechanics knows tets that are live and others: those not wanted are taken out of its sight for a moment.
+/// Adds the tangent of the wanted live tets. `mechanics` adds the tangent of all live tets, so the others are marked as
+/// not live meanwhile.
 void Relaxation::add_tangent(TissueState& state, double step_s, const std::vector<std::uint8_t>& is_wanted,
                              BlockMatrix& matrix, Workers& workers) {
   for (std::size_t t = 0; t < wanted_.size(); ++t) wanted_[t] = state.is_live[t] != 0 && is_wanted[t] != 0 ? 1 : 0;
@@ -49,7 +50,8 @@ void Relaxation::renew(TissueState& state, double step_s, std::vector<std::uint8
                  [](std::uint8_t flag) -> std::uint8_t { return flag == 0; });
   std::fill(kept_.values.begin(), kept_.values.end(), 0.0);
   add_tangent(state, step_s, is_calm, kept_, workers);
-  // Inertia over one second: nothing beside stiffness, but it keeps bits that hang by a corner from being free.
+  // Inertia over one second: negligible against stiffness, but it keeps the matrix definite for bits that hang by a
+  // corner.
   for (std::size_t v = 0; v < tissue_.vertex_mass_kg.size(); ++v) {
     double* diagonal = kept_.block(tissue_.pattern->diagonal[v]);
     for (const int i : {0, 4, 8}) diagonal[i] += tissue_.vertex_mass_kg[v];

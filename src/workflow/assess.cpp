@@ -10,14 +10,15 @@
 namespace incise {
 namespace {
 
-// How specimens that are alike differ, where a calibration of few does not tell: chosen, see the model page.
+// Usual spread between specimens that are alike, blended with that of the calibrated ones (see distance_from). Chosen,
+// see the model page.
 constexpr UsualSpread kUsualStiffness{.sd = 0.3, .is_logarithmic = true};
 constexpr UsualSpread kUsualCompliance{.sd = 0.3, .is_logarithmic = true};
 constexpr UsualSpread kUsualResidual{.sd = 0.3, .is_logarithmic = true, .is_better_below = true};
 constexpr const char* kModulusName = "youngs_modulus_kpa";
 constexpr UsualSpread kUsualScale{.sd = 0.01, .is_logarithmic = true};
 
-/// Distances of what is known of this specimen and of the calibration's.
+/// Collects the distances of this specimen from the calibration's specimens.
 class RangeCheck {
  public:
   explicit RangeCheck(Assessment& assessment) : assessment_(assessment) {}
@@ -36,7 +37,7 @@ class RangeCheck {
 };
 
 void compare_registration(const AssessmentRequest& request, Assessment& assessment) {
-  if (!(request.registration.rmse_mm > 0.0)) return;  // none was found, or the surface was laid on itself
+  if (!(request.registration.rmse_mm > 0.0)) return;  // none was found, or the surface was registered to itself
   RangeCheck range(assessment);
   range.compare("registration_rmse_mm", request.registration.rmse_mm, request.calibrated.registration_rmse_mm,
                 kUsualResidual);
@@ -58,7 +59,7 @@ void compare_stiffness(const AssessmentRequest& request, const ScenarioSet& scen
                 request.calibrated.compliance_mm_n, kUsualCompliance);
 }
 
-/// Why there is no correction to look at; empty: there is one.
+/// Why there is no correction to assess; empty: there is one.
 std::string without_correction(const Study& done) {
   if (!done.stretched || done.stretched->outcome != Outcome::Success)
     return "the specimen could not be stretched in simulation";
@@ -73,7 +74,7 @@ std::string without_correction(const Study& done) {
 Eligibility by_virtual_calibration(Eligibility judged) {
   if (judged.advice == Advice::Compensate) {
     judged.advice = Advice::CutAsPlanned;
-    judged.reasons.clear();  // they are of the advice that is withdrawn
+    judged.reasons.clear();  // they belong to the withdrawn advice
   }
   judged.reasons.emplace_back(kVirtualCalibration);
   return judged;

@@ -17,10 +17,10 @@ namespace {
 
 /// Before the cut the edge is not yet where the photograph shows it.
 constexpr double kEdgeBeforeCutSdMm = 1.0;
-/// A drag length this near to one that was simulated needs no cut of its own.
+/// A drag length this near to a simulated one needs no separate cut.
 constexpr double kNearMm = 0.15;
 
-/// The runs of one calibration: what is asked for is taken from the store or simulated.
+/// Runs one calibration: takes each requested run from the cache or simulates it.
 class CalibrationRunner {
  public:
   CalibrationRunner(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request, Cache& runs,
@@ -43,7 +43,7 @@ class CalibrationRunner {
   }
 
  private:
-  /// One setting, the stiffness over each specimen's own reference.
+  /// One setting, with the stiffness relative to each specimen's own reference.
   struct Knot {
     double speed_mm_s, dullness, stiffness_factor;
   };
@@ -87,7 +87,7 @@ class CalibrationRunner {
     if (!moved_mm.empty())
       specimen.moved_mean_mm =
           std::accumulate(moved_mm.begin(), moved_mm.end(), 0.0) / static_cast<double>(moved_mm.size());
-    // A mirrored picture shows now, not after minutes of simulation.
+    // Detects a mirrored picture now, not after minutes of simulation.
     PictureMatchSettings rough;
     rough.edge_sd_mm = kEdgeBeforeCutSdMm;
     const PictureMatch match = match_picture(subject.photographed.tumor_edge, subject.photographed.approach,
@@ -200,8 +200,8 @@ class CalibrationRunner {
     runs_.keep(slot_of(key), key, run);
   }
 
-  /// The body that a run cuts. Null, and the run says why, where the specimen cannot be held at that stiffness: one of
-  /// many that cannot does not end the calibration.
+  /// Returns the body that a run cuts. Null, with the reason in the run, if the specimen cannot be held at that
+  /// stiffness: one such run among many does not end the calibration.
   const HeldBody* body_or_problem(std::size_t specimen, CalibrationRun& run) {
     try {
       return &bodies_[specimen]->with_stiffness(run.setting.stiffness_of_case, workers_, monitor_);
@@ -214,7 +214,7 @@ class CalibrationRunner {
     }
   }
 
-  /// Lays each photograph onto a simulated specimen after its cut, tool out: the first that closed.
+  /// Matches each photograph to the simulated specimen after its first cut that closed, tool out.
   void match_pictures() {
     for (std::size_t s = 0; s < subjects_.size(); ++s) {
       CalibratedSpecimen& specimen = calibration_.specimens[s];
@@ -230,8 +230,8 @@ class CalibrationRunner {
     }
   }
 
-  /// A photograph that fits another case of the calibration without doubt, and far better than its own, has been mixed
-  /// up with it.
+  /// Refuses a photograph that matches another case of the calibration without doubt, and far better than its own: the
+  /// two were mixed up.
   void refuse_if_of_another_case(std::size_t s) const {
     constexpr double kBetterBy = 2.0;
     const CalibrationSubject& subject = *subjects_[s].of;
@@ -260,14 +260,14 @@ class CalibrationRunner {
     monitor_.message(Severity::Warning, "caution: photo_specimen: " + message);
   }
 
-  /// As if it had been cut along the planned path: a path and its cut move together.
+  /// Returns a profile as if the cut had followed the planned path: a path and its cut move together.
   [[nodiscard]] std::vector<double> as_if_planned(std::size_t s, std::vector<double> profile) const {
     const std::vector<double>& moved = subjects_[s].moved_mm;
     for (std::size_t i = 0; i < profile.size() && !moved.empty(); ++i) profile[i] -= moved[i];
     return profile;
   }
 
-  /// The start direction of the simulation, as it lies in the photograph.
+  /// Returns the photographed profile from the simulation's start direction, transferred to the photograph.
   [[nodiscard]] std::vector<double> photographed_profile(std::size_t s) const {
     const CalibrationSubject& subject = *subjects_[s].of;
     ProfileSettings profile = profile_of_inner_edge(subject.settings);
@@ -286,15 +286,16 @@ class CalibrationRunner {
     return as_if_planned(s, std::move(*errors));
   }
 
-  /// Empty: the ring did not part at the skin, or does not go round the tumour's middle.
+  /// Returns the profile of a run's inner edge; empty if the ring did not part at the skin, or does not go round the
+  /// tumour's middle.
   [[nodiscard]] std::vector<double> inner_edge_profile(std::size_t s, const CalibrationRun& run) const {
     if (!run.inner_edge || !run.closed_loop) return {};
     return error_profile(*run.inner_edge, run.final_tumor_edge, profile_of_inner_edge(subjects_[s].of->settings))
         .value_or(std::vector<double>{});
   }
 
-  /// What the inner edge would be by the mid-line of the shallowest closed layer and half the kerf's width there,
-  /// before the tissue gives. Empty: the ring did not close.
+  /// Estimates the profile of the inner edge from the mid-line of the shallowest closed layer and half the kerf's width
+  /// there, before the tissue moves. Empty if the ring did not close.
   [[nodiscard]] std::vector<double> midline_profile(std::size_t s, const CalibrationRun& run) const {
     if (!run.ring || !run.closed_loop) return {};
     const Case& settings = subjects_[s].of->settings;
@@ -303,8 +304,8 @@ class CalibrationRunner {
     return error_profile(run.ring->midline, bodies_[s]->tumor_edge(), profile).value_or(std::vector<double>{});
   }
 
-  /// By how much the inner edges of one specimen lie beside what their mid-lines say, sector by sector: the mean of its
-  /// runs that have both. Empty: none has.
+  /// Returns the mean difference, sector by sector, between the inner edges of a specimen's runs and the estimates from
+  /// their mid-lines; empty if no run has both.
   [[nodiscard]] std::vector<double> edge_beside_midline(std::size_t s) const {
     std::vector<double> sum;
     double count = 0.0;
@@ -320,8 +321,9 @@ class CalibrationRunner {
     return sum;
   }
 
-  /// Inner edges of all runs. Where strips of skin still hold the plug of a ring that closed beneath, that of its
-  /// mid-line, moved as the specimen's other inner edges lie beside theirs. Empty: no closed ring.
+  /// Returns the profiles of the inner edges of all runs. Where strips of skin still hold the plug of a ring that
+  /// closed beneath, the profile is the estimate from the mid-line plus the specimen's mean difference. Empty: no
+  /// closed ring.
   [[nodiscard]] std::vector<SimulatedProfile> profiles_of(std::size_t s) const {
     std::vector<SimulatedProfile> profiles;
     const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
@@ -337,7 +339,7 @@ class CalibrationRunner {
     return profiles;
   }
 
-  /// Not every ring of a fit is measured as the photograph's is.
+  /// Reports the rings of a fit that are not measured as the photograph's is.
   void tell_midlines(std::size_t s, const std::vector<SimulatedProfile>& profiles) {
     CalibratedSpecimen& specimen = calibration_.specimens[s];
     for (std::size_t i = 0; i < profiles.size(); ++i) {
@@ -353,7 +355,7 @@ class CalibrationRunner {
                     specimen.name, specimen.read_by_midline, closed));
   }
 
-  /// Why no line through simulated drag lengths can be drawn for a specimen.
+  /// Returns why a specimen has too few simulated drag lengths to interpolate between.
   [[nodiscard]] std::string why_no_line(std::size_t s) const {
     const std::vector<CalibrationRun>& runs = calibration_.specimens[s].runs;
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -367,8 +369,8 @@ class CalibrationRunner {
     return "simulated cuts that leave no closed ring at two drag lengths before the first that opens";
   }
 
-  /// A specimen for which fewer than two drag lengths can be read says nothing of the others: the fit does without it,
-  /// and says so. Where it is the only one left the case is refused.
+  /// Leaves out specimens for which fewer than two drag lengths can be measured: they say nothing of the others. The
+  /// fit continues without them and reports it. If it is the only one left, the case is refused.
   void leave_out_what_cannot_be_read() {
     for (std::size_t s = 0; s < subjects_.size();) {
       if (DragResponse::can_be_made_of(profiles_of(s))) {
@@ -394,9 +396,9 @@ class CalibrationRunner {
     }
   }
 
-  /// The lines between the simulated drag lengths are straight, the truth between them is not: one more cut near the
-  /// place that the first fit finds, where the interval ends at a cut that failed another half-way to that, and a
-  /// second fit.
+  /// Fits twice. Between simulated drag lengths the profile is interpolated linearly, which is not exact. So after the
+  /// first fit one more cut is made near the drag length that it found and, if the interval ends at a cut that failed,
+  /// another half-way to that.
   void fit() {
     fit_once();
     std::vector<Knot> more;
@@ -413,7 +415,8 @@ class CalibrationRunner {
     check();
   }
 
-  /// Between the end of the simulated drag lengths, if the interval ends there, and the first that failed.
+  /// Returns the drag length half-way between the end of the simulated range and the first that failed, if the interval
+  /// ends there.
   [[nodiscard]] std::optional<double> half_way_to_failure() const {
     const double end_mm = calibration_.fit->drag_length_mm.grid.back();
     const bool is_at_end =
@@ -427,7 +430,7 @@ class CalibrationRunner {
   }
 
   void fit_once() {
-    leave_out_what_cannot_be_read();  // each time: a cut made since may have opened, too
+    leave_out_what_cannot_be_read();  // each time: a cut made since then may have stayed open, too
     std::vector<FitSpecimen> specimens;
     DragFitSettings settings = request_.fit;
     bool is_every_force_measured = true;
@@ -442,7 +445,7 @@ class CalibrationRunner {
     calibration_.identifiability = identifiability(*calibration_.fit);
   }
 
-  /// One cut at the fitted values shows what the straight lines between the simulated drag lengths are worth.
+  /// Makes one cut at the fitted values, to show the error of interpolating between the simulated drag lengths.
   void check() {
     DragFit& fit = *calibration_.fit;
     make_runs({knot_at(fit.drag_length_mm.mean, fit.knows_stiffness ? std::exp(fit.ln_stiffness.mean) : 1.0)});
@@ -490,7 +493,7 @@ class CalibrationRunner {
   Monitor& monitor_;
   std::vector<std::unique_ptr<CalibrationBody>> bodies_;
   std::vector<double> factors_;  ///< stiffness factor of each row
-  std::set<std::string> told_;   ///< why specimens cannot be held
+  std::set<std::string> told_;   ///< reasons already reported why specimens cannot be held
   Calibration calibration_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMnPerN = 1000.0;
 
-/// The pull of the constraints that displace: together, as a load cell between them and the world would feel it.
+/// Pull of all displaced constraints together, as a load cell behind them would feel it.
 double pull_n(const TissueModel& model, const StaticResult& stretched) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < model.constraints.size() && i < stretched.reactions_mn.size(); ++i) {
@@ -23,7 +23,7 @@ double pull_n(const TissueModel& model, const StaticResult& stretched) {
   return sum.norm() / kMnPerN;
 }
 
-/// Where the mesh says how stiff each tet is, that is scaled, too.
+/// Scales the stiffness that the mesh itself states for its tets.
 TetMesh stiffened(TetMesh mesh, double factor) {
   for (const char* name : {"youngs_modulus_kpa", kLaidModulusArray}) {
     const auto array = mesh.cell_data.find(name);
@@ -55,7 +55,7 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
   }
   ProductSink none;
   Case planning = subject.settings;
-  planning.compensation = {};  // of a corrected cut it belongs to the planned path, and the case names its own
+  planning.compensation = {};  // of a corrected cut: it belongs to the planned path, but the case names its own path
   study_ = run_study(planning, *subject.inputs, *subject.cache, {.until = Stage::Plan}, workers, monitor,
                      subject.sink ? *subject.sink : none);
   require_no_locking(*study_.model);

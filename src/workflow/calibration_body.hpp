@@ -19,30 +19,31 @@ struct HeldBody {
   ToolPath followed;  ///< the case's own path, or the plan
 };
 
-/// One specimen of a calibration: the case's study up to its plan, and the same body with other stiffnesses, made when
-/// they are asked for.
+/// One specimen of a calibration: the case's study up to its plan, and the same body with other stiffnesses, made on
+/// request.
 class CalibrationBody {
  public:
-  /// @throws CaseError naming the case where it cannot be stretched or is no ring.
+  /// @throws CaseError naming the case if it cannot be stretched or is not a ring.
   CalibrationBody(const CalibrationSubject& subject, Workers& workers, Monitor& monitor);
 
-  /// @param stiffness_of_case  over the case's Young's modulus, > 0.
-  /// @throws CaseError where it cannot be stretched, or its path not be planned, at that stiffness.
+  /// Returns the body with another stiffness.
+  /// @param stiffness_of_case  Young's modulus over the case's, > 0.
+  /// @throws CaseError if it cannot be stretched, or its path cannot be planned, at that stiffness.
   const HeldBody& with_stiffness(double stiffness_of_case, Workers& workers, Monitor& monitor);
   /// The tumour edge on the stretched tissue before the cut.
   [[nodiscard]] const Contour& tumor_edge() const { return study_.plan->tumor_edge; }
-  /// What the specimen has to be stiffened by to pull as was measured; 1 without a measurement.
+  /// Factor on the case's modulus with which the specimen pulls as measured; 1 without a measurement.
   [[nodiscard]] double reference_stiffness() const;
-  /// Pull of the simulated specimen at the case's modulus, N: of all constraints that displace.
+  /// Pull of the simulated specimen at the case's modulus, N: sum over all displaced constraints.
   [[nodiscard]] double simulated_force_n() const { return simulated_force_n_; }
-  /// How far the case displaces what it pulls, mm.
+  /// How far the case displaces the tissue, mm (see stretch_mm).
   [[nodiscard]] double stretched_by_mm() const;
-  /// How far the case's own path lies outside the planned one, by sector, mm; empty: the cut follows the plan.
+  /// Returns how far the case's own path lies outside the planned one, by sector, mm; empty: the cut follows the plan.
   /// @throws CaseError for a path that does not go round the middle of the tumour's edge.
   [[nodiscard]] std::vector<double> moved_mm() const;
-  /// Its covariates, the modulus being that of the reference.
+  /// Covariates of its ring, with the reference modulus.
   [[nodiscard]] RingCovariates ring() const;
-  /// Of all that its cuts depend on beside their setting.
+  /// Digest of everything that determines its cuts except their setting.
   [[nodiscard]] const std::string& digest() const { return digest_; }
 
  private:
@@ -61,13 +62,13 @@ class CalibrationBody {
   std::map<double, CaseError> refusals_;  ///< stiffnesses at which it cannot be held
 };
 
-/// The case with another Young's modulus, and the simulated tool's speed and dullness.
+/// Returns the case with another Young's modulus and the simulated tool's speed and dullness.
 [[nodiscard]] Case with_setting(const Case& settings, const RunSetting& setting);
 
-/// How the errors of a case's inner edge become a profile from its start direction on.
+/// Returns the settings of a profile of the inner edge, from the case's start direction on.
 [[nodiscard]] ProfileSettings profile_of_inner_edge(const Case& settings);
 
-/// What is kept of a simulated cut.
+/// Returns the stored result of a simulated cut.
 [[nodiscard]] CalibrationRun run_of(const Case& settings, const RunSetting& setting, IncisionJobResult result,
                                     const HeldBody& body);
 

@@ -13,7 +13,7 @@ constexpr const char* kWhere = "case";
 constexpr const char* kLabelArray = "label";
 constexpr const char* kToughnessArray = "toughness";
 
-/// "'a', 'b'" of the mesh's cell arrays.
+/// Names of the mesh's cell arrays for a message: "'a', 'b'".
 std::string cell_arrays(const TetMesh& mesh) {
   std::string names;
   for (const auto& [name, data] : mesh.cell_data) names += (names.empty() ? "'" : ", '") + name + "'";
@@ -36,7 +36,7 @@ MaterialField field_from(const TetMesh& mesh) {
   throw CaseError(kWhere, field_name, fmt::format("{} of {}", first.path, first.found), first.expected);
 }
 
-/// @param field  of the case that asks for labels.
+/// @param field  field of the case that uses labels.
 const std::vector<double>& labels_of(const TetMesh& mesh, const char* field) {
   const auto found = mesh.cell_data.find(kLabelArray);
   if (found != mesh.cell_data.end() && found->second.components == 1 && found->second.values.size() == mesh.tets.size()) {
@@ -51,7 +51,7 @@ const std::vector<double>& labels_of(const TetMesh& mesh, const char* field) {
                   "A mesh that is made from a CT has the labels of ct.labels: give these, or specimen.mesh");
 }
 
-/// @param field  of the case that names the label.
+/// @param field  field of the case that names the label.
 void require_label(const std::vector<double>& labels, int label, const std::string& field) {
   if (std::find(labels.begin(), labels.end(), static_cast<double>(label)) != labels.end()) return;
   const auto [least, most] = std::minmax_element(labels.begin(), labels.end());
@@ -59,7 +59,7 @@ void require_label(const std::vector<double>& labels, int label, const std::stri
                   fmt::format("a label of the mesh; they lie between {:g} and {:g}", *least, *most));
 }
 
-/// `values` with the tets of one label changed; they start as `common` everywhere.
+/// Sets `values` in the tets of one label; an empty list starts as `common` everywhere.
 void lay_over(std::vector<double>& values, const std::vector<double>& labels, int label, double value, double common) {
   if (values.empty()) values.assign(labels.size(), common);
   for (std::size_t t = 0; t < labels.size(); ++t) {
@@ -67,7 +67,7 @@ void lay_over(std::vector<double>& values, const std::vector<double>& labels, in
   }
 }
 
-/// The directions of the field that the study describes, one for each tet.
+/// Returns the fibre directions of the study's field, one for each tet.
 std::vector<Vec3> directions_of(const FibreField& field, const TetMesh& mesh) {
   FibreDirections found = fibre_directions(mesh, field);
   if (found.outcome == Outcome::Success) return std::move(found.directions);
@@ -189,7 +189,7 @@ std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& 
 namespace {
 
 // Of the default hold.
-constexpr double kClampMm = 15.0;    // what the posterior clamp of a specimen holder takes hold of
+constexpr double kClampMm = 15.0;    // grip of a specimen holder's posterior clamp
 constexpr double kSutureMm = 10.0;   // round the retraction suture
 constexpr double kStretchMm = 20.0;  // paper II-A
 
@@ -203,7 +203,7 @@ std::string default_hold_in_words() {
 }
 
 std::vector<Constraint> default_constraints(const TetMesh& mesh) {
-  constexpr double kShortestMm = 40.0;  // what lies between the two ends is then stretched to 2.3 times its length, and no more
+  constexpr double kShortestMm = 40.0;  // the part between the ends is then stretched to at most 2.3 times its length
   const Box3 box = bounding_box(mesh.vertices);
   const double length_mm = box.sizes().y(), lowest = box.min().z();
   if (!(length_mm >= kShortestMm)) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kNoSuccess = "is open, touches the tumour's edge or did not converge";
 
-/// Points of the inner edge, tool out, at their places in the stretched tissue before the cut.
+/// Errors of the inner edge, tool out, at the places of its points in the stretched tissue before the cut.
 PathErrors inner_edge_errors(const SimulatedCut& cut) {
   const Contour& seen = *cut.incision.inner_edge;
   const Contour& reference = *cut.incision.kerf.inner_edge_reference;
@@ -35,8 +35,8 @@ PathErrors inner_edge_errors(const SimulatedCut& cut) {
   return errors;
 }
 
-/// The mid-line of the shallowest layer in which the ring closed, at the skin's height; for an inner edge, half the
-/// kerf's width there nearer to the tumour.
+/// Errors of the mid-line of the shallowest closed layer, at the skin's height; for an inner edge, of a line nearer to
+/// the tumour by half the kerf's width there.
 std::optional<PathErrors> layer_path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
                                             Monitor& monitor) {
   const std::optional<ClosedRing> ring = shallowest_closed_ring(cut.incision.kerf, settings.plan.approach.normalized());
@@ -55,7 +55,7 @@ std::optional<PathErrors> layer_path_errors(const Case& settings, const Simulate
   return PathErrors{std::move(found.points.points), std::move(found.signed_error_mm), 0.0, false};
 }
 
-/// What the kerf lacks of the depth that is accepted without a caution, averaged over the path.
+/// Depth, mm, that the kerf lacks of the least depth accepted without a caution, averaged over the path.
 double mean_shortfall_mm(const Case& settings, const SimulatedCut& cut) {
   const std::vector<double> shares = depth_shares(settings, cut.incision.kerf.depth);
   if (shares.empty()) return 0.0;
@@ -65,7 +65,8 @@ double mean_shortfall_mm(const Case& settings, const SimulatedCut& cut) {
   return settings.plan.depth_mm * missing / static_cast<double>(shares.size());
 }
 
-/// The verdict on a cut, of what another course may mend. Heat is not: it follows from where the cut is meant to lie.
+/// Verdict on a cut by objections that another path may remove. Heat is not among them: it follows from the intended
+/// place of the cut.
 VerdictStatus status_of_course(const Verdict& verdict) {
   constexpr std::array<std::string_view, 6> kOfCourse{"outcome",    "tumor_distance", "lateral_margin",
                                                       "open_layer", "depth",          "convergence"};
@@ -77,8 +78,8 @@ VerdictStatus status_of_course(const Verdict& verdict) {
   return worst;
 }
 
-/// What a correction loses in depth or closure; empty: nothing. It may leave no more layers open than the first cut, and
-/// has to be as deep everywhere as a cut has to be, or as the first one was.
+/// Returns what a correction loses in depth or closure; empty: nothing. It may leave no more layers open than the first
+/// cut, and its least depth must reach the rule's limit or that of the first cut.
 std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& first, const SimulatedCut& corrected) {
   const std::vector<double> open = open_layers_mm(corrected.incision), before = open_layers_mm(first.incision);
   if (open.size() > before.size())
@@ -216,7 +217,7 @@ Correction correct_converging(const Case& settings, const ToolPath& followed, co
 
 namespace {
 
-/// Why no pass took the place of the first cut, where one came nearer; empty: none did.
+/// Returns why no pass replaced the first cut although one came nearer; empty if none did.
 std::string why_none_was_kept(const ConvergedCompensation& done) {
   const CompensationPass& first = done.passes.front();
   const CompensationPass* nearest = nullptr;
@@ -244,7 +245,7 @@ std::string objection_to(const Case& settings, const Correction& correction, con
                          const SimulatedCut& corrected) {
   if (corrected.outcome != Outcome::Success) return fmt::format("its cut {}", in_words(corrected.outcome));
   if (std::string loss = loss_of_depth_or_closure(settings, first, corrected); !loss.empty()) return loss;
-  if (correction.method == CompensationMethod::Profile) return {};  // simulated errors are what it does not go by
+  if (correction.method == CompensationMethod::Profile) return {};  // it does not rely on simulated errors
   std::optional<double> before, after;
   std::string none_kept;
   bool is_at_first = false, is_first_measured = true;

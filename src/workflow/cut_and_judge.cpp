@@ -43,7 +43,8 @@ EvaluationSettings evaluation_settings(const Case& settings, ContourKind contour
   return evaluation;
 }
 
-/// The mid-line of a layer against what the mid-line on the skin is held against: both as seen along the approach, at the skin's height.
+/// Errors of a layer's mid-line against the same line as the mid-line on the skin, seen along the approach, at the
+/// skin's height.
 LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const ToolPath& intended, const EvaluationSettings& centerline) {
   LayerErrors errors;
   if (!layer.centerline) return errors;
@@ -58,14 +59,14 @@ LayerErrors layer_errors(const Case& settings, const KerfLayer& layer, const Too
   return errors;
 }
 
-/// Over the waypoints of a path.
+/// Mean of a field over the waypoints of a path.
 double mean_of(const ToolPath& path, double Waypoint::*field) {
   double sum = 0.0;
   for (const Waypoint& waypoint : path.waypoints) sum += waypoint.*field;
   return sum / static_cast<double>(path.waypoints.size());
 }
 
-/// Layers every millimetre below those that are looked at by default, down to the path's deepest place.
+/// Adds layers every millimetre below the default ones, down to the path's deepest place.
 void add_layers_down_to(const ToolPath& path, const Vec3& approach, std::vector<double>& layer_depths_mm) {
   double deepest_mm = 0.0;
   for (const Waypoint& waypoint : path.waypoints) deepest_mm = std::max(deepest_mm, waypoint.depth_mm * waypoint.axis.dot(approach));
@@ -131,7 +132,7 @@ SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath
     cut.inner_edge = evaluate(cut.incision.inner_edge, cut.incision.final_tumor_edge, inner_edge);
   }
   for (const KerfLayer& layer : cut.incision.kerf.layers) cut.layers.push_back(layer_errors(settings, layer, intended, centerline));
-  // Heat is that of the real tool, which keeps to the speeds of the path, whatever speed the simulated one needed.
+  // Heat comes from the real tool, which moves at the speeds of the path, whatever the speed of the simulated tool.
   cut.thermal_half_width_mm = widest_heat(settings.thermal, settings.plan.power_w, followed, settings.tool).half_width_mm;
   if (settings.plan.kind == PlanKind::Ring && cut.centerline.signed_error_mm) {
     cut.thermal_margin_mm = cut.centerline.target_mm + cut.centerline.signed_error_mm->min - cut.thermal_half_width_mm;

@@ -11,10 +11,11 @@
 namespace incise {
 namespace {
 
-// Above this Poisson's ratio cuts of tets of their own volume are of no use; above that of the rule `locking` they begin to lock.
+// Above this Poisson's ratio, cuts with volume per_tet are useless; above the limit of the rule `locking`, tets begin
+// to lock.
 constexpr double kLockedFrom = 0.495;
 constexpr double kRatioRounding = 1e-9;
-constexpr double kNearPathMm = 1.5;  // tets with their centroid this near to the tool's way count as met
+constexpr double kNearPathMm = 1.5;  // tets whose centroid is this near to the tool's way count as met
 
 struct TetRatio {
   double ratio = 0.0;
@@ -46,7 +47,7 @@ double mean_edge_mm(const Tet& tet, std::span<const Vec3> positions) {
   return sum / 6.0;
 }
 
-/// Tells which places the tool's way comes near, as seen along the approach and no deeper than it goes.
+/// Finds places near the tool's way, seen along the approach and no deeper than the tool.
 class WayOfTool {
  public:
   WayOfTool(const ToolPath& path, const Vec3& approach) : view_(view_along(approach)), entries_(entry_contour(path)) {
@@ -79,7 +80,7 @@ class WayOfTool {
   double deepest_mm_ = 0.0;
 };
 
-/// Counts the places of a list for which something holds, and adds a reason where it holds for any.
+/// Counts the places of a list with a property, and adds an objection if there are any.
 template <class Holds, class Text>
 void add_places(std::string_view id, std::string_view what, std::span<const Vec3> places, const Holds& holds,
                 const Text& text, Verdict& verdict) {
@@ -93,14 +94,14 @@ void add_places(std::string_view id, std::string_view what, std::span<const Vec3
               VerdictPlace{{}, places[first], fmt::format("point {} of {}", first, what)});
 }
 
-/// Places on skin that is not the specimen's own, or that a person drew.
+/// Adds objections for places on artificial skin, or on skin that a person drew.
 void add_made_skin(const Case& settings, const TissueModel& model, const MadeSkin& made,
                    std::span<const Vec3> stretched, const ToolPath& path, Verdict& verdict) {
   if (made.empty()) return;
   const PlacedSkin skin(boundary_surface(model.mesh), stretched, made);
   const auto is_cut = [&](const Vec3& place) { return skin.cut_at(place).has_value(); };
   const auto is_drawn = [&](const Vec3& place) { return skin.is_painted(place); };
-  const auto say_cut = [&](const Vec3& place) {  // above and around it lies tissue that the plan does not know
+  const auto say_cut = [&](const Vec3& place) {  // above and around it lies tissue that the plan does not include
     return fmt::format(
         "lie where the region of interest (ct.roi_box_mm) or the end of the scan cuts through the tissue, "
         "on its {} side. The skin there is artificial: the specimen continues beyond it. Move that face "

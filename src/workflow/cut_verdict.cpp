@@ -14,10 +14,11 @@
 namespace incise {
 namespace {
 
-// Vertices held back to max_step_mm, per step and tet. The limit is for loose bits: sound cuts of 41 000 tets have 5e-5 to 3e-4, a block of
-// tets of 4 mm, whose body lags for no reason in its law, 0.02 to 0.03.
+// Vertices held back to max_step_mm, per step and tet. The limit allows for loose bits: sound cuts of 41 000 tets have
+// 5e-5 to 3e-4; a block of tets of 4 mm, whose body lags for numerical reasons only, has 0.02 to 0.03.
 constexpr double kHeldBackShare = 0.002;
-constexpr double kInvertedShare = 1e-4;  // of the tets: one or two slivers at the kerf's teeth do not move a line that is measured over many
+// Of the tets: one or two slivers at the kerf's teeth do not move a line that is measured over many tets.
+constexpr double kInvertedShare = 1e-4;
 
 void judge_outcome(const SimulatedCut& cut, Verdict& verdict) {
   if (cut.outcome != Outcome::Success) {
@@ -70,7 +71,7 @@ struct Tissue {
   std::optional<VerdictPlace> at;
 };
 
-/// @param off_mm  from the line to where tissue ends.
+/// @param off_mm  distance from the line to the end of the tissue.
 void note_line(const Points& places, const std::vector<double>& distance_mm, const std::vector<double>& beyond_mm,
                double off_mm, const std::string& name, Tissue& least) {
   for (std::size_t i = 0; i < distance_mm.size(); ++i) {
@@ -119,7 +120,7 @@ Tissue least_tissue(const Case& settings, const SimulatedCut& cut, const Expecte
   return least;
 }
 
-/// What a ring that errs as this one does would have to be planned with.
+/// States the margin with which a ring with the same error would keep the close margin.
 std::string margin_that_would_do(const Case& settings, double left_mm) {
   if (settings.plan.kind == PlanKind::Line) return {};
   const double needed_mm = settings.plan.lateral_margin_mm + settings.close_margin_mm - left_mm;
@@ -127,7 +128,7 @@ std::string margin_that_would_do(const Case& settings, double left_mm) {
                      std::floor(10.0 * needed_mm + 1.0) / 10.0);
 }
 
-/// "leaves 2.13 mm of tissue beside the tumour's edge", with as many digits as tell it from the limit.
+/// Formats "leaves 2.13 mm of tissue beside the tumour's edge", with enough digits to differ from the limit.
 std::string tissue_in_words(double left_mm, double limit_mm) {
   if (left_mm < 0.0) return fmt::format("lies {:.2f} mm inside the tumour's edge", -left_mm);
   int digits = 2;
@@ -135,14 +136,14 @@ std::string tissue_in_words(double left_mm, double limit_mm) {
   return fmt::format("leaves {:.{}f} mm of tissue beside the tumour's edge", left_mm, digits);
 }
 
-/// "inner edge, the tool out, with the errors …, leaves 2.13 mm …": what is expected of a line.
+/// Formats "inner edge, the tool out, with the errors …, leaves 2.13 mm …": the expectation for a line.
 std::string expected_in_words(const Tissue& least, double limit_mm) {
   return fmt::format("{}{} with the errors that compensation expects of real cuts, {}", least.of,
                      least.of.ends_with(',') ? "" : ",", tissue_in_words(least.left_mm, limit_mm));
 }
 
-/// Refused where the cut is expected too near the tumour, or is simulated to enter it. What was learned of other cuts
-/// may argue against the simulation, but not by all of the margin.
+/// Refuses a cut that is expected too near the tumour, or enters it in simulation. Errors learned from other cuts may
+/// correct the simulation, but not by the whole margin.
 void judge_margin(const Case& settings, const SimulatedCut& cut, const ExpectedErrors& expected, Verdict& verdict) {
   const double limit_mm = settings.close_margin_mm;
   const Tissue simulated = least_tissue(settings, cut, {});
@@ -169,7 +170,7 @@ void judge_margin(const Case& settings, const SimulatedCut& cut, const ExpectedE
   if (simulated.left_mm <= limit_mm) refuse(simulated, as_simulated);
 }
 
-/// An expectation that cannot be laid round the tumour is said.
+/// Reports that expected errors could not be determined.
 void judge_expectation(const ExpectedErrors& expected, Verdict& verdict) {
   if (expected.is_measured) return;
   verdict.add("simulated_margin", {},
@@ -187,7 +188,7 @@ void judge_tumor(const Case& settings, const SimulatedCut& cut, Verdict& verdict
               settings.close_margin_mm);
 }
 
-/// Heat goes out from the electrode, which runs in the kerf's middle.
+/// Heat spreads from the electrode, which runs in the kerf's middle.
 void judge_heat(const SimulatedCut& cut, Verdict& verdict) {
   std::optional<double> left_mm = cut.thermal_margin_mm;
   if (const std::optional<DeepMargin>& margin = cut.incision.kerf.deep_margin) {
@@ -247,7 +248,7 @@ Contour flat(const std::vector<Vec2>& points) {
   return contour;
 }
 
-/// The farthest point of `points` outside a polygon in the plane z = 0.
+/// Notes the farthest point of `points` outside a polygon in the plane z = 0.
 void note_outside(const Contour& points, const Contour& polygon, EdgeFit& fit) {
   for (const Vec3& p : points.points) {
     if (contains_in_view(polygon, p, -Vec3::UnitZ())) continue;
@@ -266,7 +267,7 @@ std::optional<double> nearest_to_tumor_mm(const Case& settings, const SimulatedC
 
 std::vector<double> depth_shares(const Case& settings, const DepthReached& depth) {
   std::vector<double> shares;
-  // A tool along the surface's normal goes less deep along the approach: there the path's own depth counts alone.
+  // A tool along the surface's normal goes less deep along the approach: then only the path's own depth counts.
   const double asked_mm = settings.plan.axis_mode == AxisMode::Approach ? settings.plan.depth_mm : 0.0;
   for (std::size_t i = 0; i < depth.profile.depth_mm.size(); ++i) {
     const double planned = std::max(depth.planned_at_mm.at(i), asked_mm);

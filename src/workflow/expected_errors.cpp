@@ -9,11 +9,11 @@ ProfileSettings sectors_of(const Case& settings) {
   return {.approach = settings.plan.approach, .start_direction = settings.plan.start_direction};
 }
 
-/// Simulated errors by sector of the line that the path is corrected by; nothing where it does not go round the
-/// tumour's middle.
+/// Returns the simulated errors, by sector, of the line by which the path is corrected; nullopt if it does not go round
+/// the tumour's middle.
 std::optional<std::vector<double>> simulated_sectors(const Case& settings, const SimulatedCut& cut,
                                                      const Contour& tumor_edge) {
-  Monitor silent;  // whoever corrects by this line says which it is
+  Monitor silent;  // the correction itself reports which line it uses
   const std::optional<PathErrors> errors = path_errors(settings, cut, tumor_edge, silent);
   if (!errors) return std::nullopt;
   return sector_means(errors->places, errors->signed_error_mm, tumor_edge, sectors_of(settings));

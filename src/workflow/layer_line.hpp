@@ -6,11 +6,11 @@
 
 namespace incise {
 
-/// Errors of a layer's mid-line as seen along the approach, at the skin's height, against the lateral margin.
+/// Errors of a layer's mid-line against the lateral margin, seen along the approach, at the skin's height, mm.
 /// @pre the layer has a mid-line.  @param tumor_edge  closed, mm.  @throws InvalidArgument as contour_errors.
 [[nodiscard]] ContourErrors layer_line_errors(const Case& settings, const KerfLayer& layer, const Contour& tumor_edge);
 
-/// The mid-line lifted to the skin's height. @pre the layer has one.
+/// Returns a layer's mid-line, lifted to the skin's height. @pre the layer has one.
 [[nodiscard]] Contour lifted_midline(const Case& settings, const KerfLayer& layer);
 
 }  // namespace incise

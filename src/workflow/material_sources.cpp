@@ -26,8 +26,8 @@ Points centroids_of(const TetMesh& mesh) {
   return centroids;
 }
 
-/// The label of the nearest voxel of tissue of the 27 round a place: the skin reaches beyond the voxels' middles.
-/// 0: none.
+/// Returns the label of the tissue voxel nearest to a place, among the 27 around it, because the skin extends beyond
+/// the centres of its voxels. 0: none is tissue.
 std::uint8_t label_at(const LabelVolume& labels, const std::array<bool, 256>& is_tissue, const Vec3& place) {
   const VolumeGrid& grid = labels.grid;
   const Vec3 index = grid.index_from_world(place);
@@ -46,7 +46,8 @@ std::uint8_t label_at(const LabelVolume& labels, const std::array<bool, 256>& is
   return label;
 }
 
-/// Trilinear, of the known voxels among the eight round a place, by their weights; nothing: none is known.
+/// Interpolates trilinearly between those of the eight voxels round a place that are known, by their weights; nullopt:
+/// none is known.
 std::optional<double> known_at(const GrayVolume& map, const Vec3& place) {
   const Vec3 index = map.grid.index_from_world(place);
   const Eigen::Array3i low = index.array().floor().cast<int>();

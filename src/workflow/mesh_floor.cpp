@@ -7,15 +7,15 @@
 namespace incise {
 namespace {
 
-/// Tissue that does not move passes the tool at speed, so contact may not have to last as long as in tissue that is
-/// dragged along: a tet goes that stays in reach for this share of the widest way through the tool's reach. The kerf is
-/// then about as wide as the needle.
+/// Tissue that does not move passes the tool at full speed, so it is in contact for a shorter time than dragged tissue.
+/// A tet is removed if it stays in reach for this share of the widest way through the tool's reach. The kerf is then
+/// about as wide as the needle.
 constexpr double kContactShare = 13.0 / 15.0;
 constexpr double kDoseShare =
-    0.5;  // the same of a cut by points: its kerf is then about as wide as its kernel's radius
+    0.5;  // the same for a cut by points: its kerf is then about as wide as its kernel's radius
 constexpr double kBeyondTissueMm = 1e4;
 
-/// The stretched body as one that nothing can move.
+/// Returns the stretched body with all vertices fixed.
 TissueModel held_everywhere(const TissueModel& model, const TissueState& stretched) {
   TetMesh mesh = model.mesh;
   mesh.vertices = stretched.positions;
@@ -35,7 +35,7 @@ CutSettings without_drag(const Case& settings) {
   cut.slip_mm.reset();
   const double way_mm = cut.rule == CutRule::Lattice ? kDoseShare * cut.dose_length_mm
                                                      : kContactShare * 2.0 * (radius_mm(settings.tool) + cut.reach_mm);
-  // By the paper's rule the tool gets on by a layer of tets each time that their count is full.
+  // By the paper's rule, the tool advances by one layer of tets each time that their count is full.
   cut.dullness = cut.rule == CutRule::Paper ? 1.0 : way_mm / (cut.speed_mm_s * cut.reference_step_s);
   return cut;
 }
@@ -48,7 +48,7 @@ double mean_distance_from_mean(const std::vector<double>& values) {
   return distance;
 }
 
-/// Reports the progress of this cut as a stage of its own, because it is not a cut along the planned path.
+/// Reports the progress of this cut as a separate stage, because it is not a cut along the planned path.
 class OwnStage : public Monitor {
  public:
   explicit OwnStage(Monitor& outer) : outer_(outer) {}

@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-/// Across the approach, unit length.
+/// Direction of the pull across the approach, unit length.
 Vec3 pull_direction(const TissueModel& model, const ViewFrame& view) {
   Vec3 farthest = Vec3::Zero();
   for (const Constraint& constraint : model.constraints) {

@@ -29,7 +29,7 @@ CalibrationSubject subject_of(const Case& settings, Inputs& inputs, Cache& cache
   return subject;
 }
 
-/// A specimen in the tissue that a calibration expects.
+/// Cuts of a specimen in the tissue that a calibration expects.
 class TissueCuts {
  public:
   TissueCuts(const Case& settings, Inputs& inputs, Cache& cache, const Study& done, const CalibratedBelief& belief,
@@ -67,9 +67,9 @@ class TissueCuts {
   }
 
  private:
-  /// How far this specimen's modulus may be from its reference, beside what the calibration says.
+  /// Uncertainty of this specimen's modulus about its reference, beyond the calibration's.
   [[nodiscard]] double own_stiffness_sd() const {
-    if (request_.stretch_force_n) return 0.0;  // how far a pull misleads is in the calibration's photographs, too
+    if (request_.stretch_force_n) return 0.0;  // the calibration's photographs include the error of a measured pull
     return belief_.knows_forces ? request_.unknown_stiffness_sd : 0.0;
   }
 
@@ -89,7 +89,7 @@ class TissueCuts {
     }
   }
 
-  /// What the calibration's photographs say of real cuts of this ring.
+  /// Predicts real cuts of this ring from the calibration's photographs.
   void expect_photographs() {
     planned_ = runs_along(intended_);
     std::vector<double> simulated_mm = planned_.front().profile_mm;
@@ -154,7 +154,7 @@ class TissueCuts {
     return CacheKey("scenario_run").add_text(body_.digest()).add(setting).add(unmarked(path));
   }
 
-  /// One run for each tissue: those that the store has, and the others simulated side by side.
+  /// Returns one run for each tissue: those in the cache, and the others simulated side by side.
   std::vector<ScenarioRun> runs_along(const ToolPath& path) {
     std::vector<ScenarioRun> made;
     std::vector<std::size_t> missing;
@@ -179,7 +179,7 @@ class TissueCuts {
   void simulate(const ToolPath& path, const std::vector<std::size_t>& missing, std::vector<ScenarioRun>& made) {
     std::vector<IncisionTask> tasks;
     std::vector<const HeldBody*> held;
-    std::vector<std::size_t> simulated;  // those of the missing whose tissue can be held and stretched
+    std::vector<std::size_t> simulated;  // those missing runs whose tissue can be held and stretched
     for (const std::size_t k : missing) {
       const HeldBody* body = held_at(made[k]);
       if (body == nullptr) continue;
@@ -206,7 +206,8 @@ class TissueCuts {
                                   tasks.size() - done, tasks.size()));
   }
 
-  /// The specimen with a scenario's stiffness; null, and the scenario's problem says why: it cannot be stretched so.
+  /// Returns the specimen with a scenario's stiffness. Null, with the reason in the run's problem, if it cannot be
+  /// stretched.
   const HeldBody* held_at(ScenarioRun& run) {
     try {
       return &body_.with_stiffness(run.setting.stiffness_of_case, workers_, monitor_);
@@ -216,7 +217,7 @@ class TissueCuts {
     }
   }
 
-  /// Nothing where there is no closed ring, or an inner edge that is open at the skin.
+  /// Measures a cut; leaves the run empty without a closed ring, or with an inner edge that is open at the skin.
   void measure_into(ScenarioRun& run, IncisionResult incision, const ToolPath& followed, const HeldBody& held) const {
     const Case settings = with_setting(settings_, run.setting);
     const SimulatedCut cut = judge(settings, std::move(incision), followed, held.plan, held.model.mesh.tets.size());

@@ -22,7 +22,7 @@ void warn_of_looser_limits(const Case& settings, Monitor& monitor) {
                                                  settings.close_margin_mm, usual_mm));
 }
 
-/// What keeps a case from having a program at all; empty: nothing.
+/// Returns why a case cannot have a program at all; empty: it can.
 std::string without_program(const Case& settings) {
   if (!settings.T_robot_sim) return "robot.T_robot_sim is not given";
   if (half_width_mm(settings.tool) > 0.0) {
@@ -31,7 +31,7 @@ std::string without_program(const Case& settings) {
   return {};
 }
 
-/// Speeds and places of a given path come from a person.
+/// Makes the program. Speeds and places of a given path come from a person, so the path may be unsuitable.
 RobotProgram program_along(const ToolPath& path, const Case& settings, const Inputs& inputs) {
   ProgramSettings motion;
   motion.overlap_mm = settings.cut.overlap_mm;

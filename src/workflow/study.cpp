@@ -24,7 +24,7 @@ namespace {
 
 double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-/// What a cache keeps of a stage.
+/// Cache entry of a stage.
 template <class T>
 struct Timed {
   T value;
@@ -36,9 +36,9 @@ void describe(Visitor& v, Timed<T>& t) {
   v("wall_s", t.wall_s, "Time that it took.");
 }
 
-// An entry that is whole may still have been written by someone else: nothing in it may point outside the mesh.
+// An undamaged entry may still come from someone else: nothing in it may point outside the mesh.
 
-/// How many vertices and tets the lists of a state have: those of the split mesh of a cut by points.
+/// Lengths of a state's lists of vertices and tets: those of the split mesh for a cut by points.
 struct Counts {
   std::size_t vertices, tets;
 };
@@ -84,7 +84,7 @@ bool fits(const Counts& counts, const std::vector<CutFrame>& frames) {
                              [&counts](const CutFrame& frame) { return frame.positions.size() == counts.vertices; });
 }
 
-/// Frames of a cut under way have what had come apart when they were kept.
+/// Frames of an unfinished cut have the vertices that existed when they were recorded.
 bool fits(const TissueModel& model, const IncisionProgress& progress) {
   const Counts least = counts_of(model), most = counts_of(model, progress.state.splits);
   return fits(model, progress.state) && std::ranges::all_of(progress.frames, [&](const CutFrame& frame) {
@@ -151,12 +151,12 @@ class Runner {
   }
 
  private:
-  /// A correction by photographs that is not to be verified needs no cut.
+  /// Returns whether the run needs no cut: a correction by photographs that is not verified.
   [[nodiscard]] bool goes_without_simulation() const {
     return options_.until == Stage::Compensate && settings_.compensation.method == CompensationMethod::Profile;
   }
 
-  /// What is quickly read is read first: a damaged contour shows before anything long has run.
+  /// Reads the small inputs first: a damaged contour is reported before any long computation.
   void read_inputs() {
     tumor_edge_ = inputs_.read_tumor_edge();
     tumor_surface_ = inputs_.read_tumor_surface();
@@ -189,19 +189,19 @@ class Runner {
                     "Without --resume what is missing is computed from the beginning");
   }
 
-  /// How the specimen is held and what it is made of.
+  /// Adds how the specimen is held and what it consists of.
   void add_specimen(CacheKey& key) const {
     key.add(settings_.material).add(settings_.variation).add(settings_.gravity_mm_s2).add(settings_.constraints);
   }
 
-  /// Where the path is laid, beside the tissue. Its power does not matter.
+  /// Adds everything but the tissue that determines the path. The power does not.
   void add_plan(CacheKey& key) const {
     PlanSettings plan = settings_.plan;
     plan.power_w = PlanSettings{}.power_w;
     key.add(plan).add(settings_.tumor_configuration).add(settings_.surface_tolerance_mm).add(tumor_edge_).add(line_);
   }
 
-  /// Takes a product from the cache, or makes and keeps it; reports which, and how long it took.
+  /// Takes a product from the cache, or makes and keeps it; reports which, and the time it took.
   template <class T, class Make>
   T product(Stage stage, ProductNote& note, const CacheKey& key, const Make& make, bool may_resume_in_it = false) {
     const auto start = std::chrono::steady_clock::now();
@@ -225,7 +225,7 @@ class Runner {
     return std::move(timed.value);
   }
 
-  /// Whether a product holds together, and with the mesh where it is of one.
+  /// Returns whether a product is consistent, also with the mesh if it refers to one.
   template <class T>
   bool fits_mesh(const T& value) const {
     if constexpr (std::is_same_v<T, StaticResult>) return fits(*study_.model, value.state);
@@ -300,7 +300,7 @@ class Runner {
     return true;
   }
 
-  /// States what the rest will take, and refuses it where there is not so much.
+  /// Reports the memory that the rest needs, and refuses the run if less is available.
   void require_memory(const TetMesh& mesh) {
     const std::uint64_t needed =
         expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, settings_.frames,
@@ -317,7 +317,7 @@ class Runner {
                     "A coarser mesh needs less: meshing.fine_mm, meshing.coarse_mm, meshing.tets");
   }
 
-  /// The mesher tells what it cannot do with the lengths or the count as a broken precondition; here they came from the case.
+  /// The mesher reports impossible lengths or counts as a broken precondition; here they came from the case.
   MeshProduct make_mesh() {
     try {
       return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, tumor_edge_, line_, workers_, monitor_,
@@ -357,14 +357,14 @@ class Runner {
     return true;
   }
 
-  /// Of a cut along a path into the held tissue.
+  /// Returns the key of a cut along a path into the held tissue.
   CacheKey key_of_cut(const ToolPath& path) const {
     ToolPath course = unmarked(path);
     course.tumor_edge = study_.plan->tumor_edge;
     return CacheKey("cut").add_text(held_).add(course).add(incision_settings_for(settings_, path, placed_tumor()));
   }
 
-  /// The tool runs on beyond the start of a ring, but not round it again.
+  /// The tool continues beyond the start of a ring, but not round it again.
   void require_overlap_on(const ToolPath& path) const {
     const double round_mm = tip_way_mm(path);
     if (!path.is_closed || settings_.cut.overlap_mm < round_mm) return;
@@ -372,7 +372,7 @@ class Runner {
                     fmt::format("less than the {:.1f} mm of the tip's way round the ring", round_mm));
   }
 
-  /// What refuses the plan already goes with its path, although no cut was made.
+  /// Attaches objections that already refuse the plan to its path, although no cut was made.
   void refuse_before_cut() {
     const auto refusals = [this](const char* what, const ToolPath& path) -> std::optional<Verdict> {
       const Verdict of_path =
@@ -389,7 +389,7 @@ class Runner {
     if (of_plan || of_correction) sink_.verdicts(of_plan, of_correction);
   }
 
-  /// Whoever takes a path from its file finds there what its cut is worth.
+  /// Hands over the verdicts, so that the file of a path shows them.
   void hand_over_verdicts(bool is_correction_rejected) {
     const auto of = [&](const std::optional<SimulatedCut>& cut,
                         const std::string& rejection) -> std::optional<Verdict> {
@@ -403,7 +403,7 @@ class Runner {
                    of(study_.corrected, rejected_correction(study_.correction_note)));
   }
 
-  /// A cut with what is held against it.
+  /// Returns a cut with its verdict.
   SimulatedCut judged(IncisionResult incision, const ToolPath& path) const {
     SimulatedCut cut = judge(settings_, std::move(incision), path, *study_.plan, study_.model->mesh.tets.size());
     const SimulatedCut& along_plan = study_.as_planned ? *study_.as_planned : cut;
@@ -421,19 +421,19 @@ class Runner {
     auto kept = cache_.find<Timed<IncisionResult>>(
         name, key, monitor_, [this](const Timed<IncisionResult>& cut) { return fits(*study_.model, cut.value); });
     if (!kept) return std::nullopt;
-    cache_.remove(checkpoint_slot(name));  // a run that was killed once it had kept the cut has left it
+    cache_.remove(checkpoint_slot(name));  // left by a run that was killed after it kept the cut
     return KeptCut{judged(std::move(kept->value), path), kept->wall_s};
   }
 
   void keep_cut(const std::string& name, const CacheKey& key, KeptCut& made) {
-    Timed<IncisionResult> timed{std::move(made.cut.incision), made.wall_s};  // it is large: lent, not copied
+    Timed<IncisionResult> timed{std::move(made.cut.incision), made.wall_s};  // large: moved here and back, not copied
     cache_.keep(name, key, timed);
     made.cut.incision = std::move(timed.value);
     cache_.remove(checkpoint_slot(name));
   }
 
-  /// Simulates a cut from where an interrupted one left it, or from the beginning, and keeps it. @param what  is under
-  /// way, for messages.
+  /// Simulates a cut, from its checkpoint or from the beginning, and keeps it.
+  /// @param what  name of the stage or pass, for messages.
   KeptCut make_cut(std::string_view what, const std::string& name, const CacheKey& key, const ToolPath& path) {
     const auto start = std::chrono::steady_clock::now();
     const std::string slot = checkpoint_slot(name);
@@ -457,7 +457,7 @@ class Runner {
         cache_.keep(slot, key, progress);
         last_kept = std::chrono::steady_clock::now();
       } catch (const DataError& error) {
-        if (is_interrupted) throw;  // nothing of the cut would be left
+        if (is_interrupted) throw;  // the whole cut would be lost
         monitor_.message(Severity::Warning, fmt::format("{}. The cut continues without a checkpoint", error.what()));
       }
     };
@@ -481,7 +481,7 @@ class Runner {
     return whole;
   }
 
-  /// The cut of a stage, found or made. @param also  another slot that may hold it.
+  /// Returns the cut of a stage, from the cache or simulated. @param also  another slot that may hold it.
   SimulatedCut cut(Stage stage, const std::string& name, const ToolPath& path, const std::string& also = {}) {
     require_overlap_on(path);
     const auto start = std::chrono::steady_clock::now();
@@ -525,7 +525,7 @@ class Runner {
     }
   }
 
-  /// The planned path, or the one that was given, which is checked.
+  /// Chooses the path to follow: the planned one, or the given one after checks.
   void choose_path() {
     if (given_path_) {
       require_reached();
@@ -606,8 +606,8 @@ class Runner {
     return std::move(there->cut);
   }
 
-  /// The cut that the correction ended with was made on the way: it is not made again. The others are of no use any
-  /// more.
+  /// Verifies the correction. With the default method, its cut was made during the iteration and is not repeated. The
+  /// cuts of the other passes are no longer needed.
   bool verify() {
     const Correction& correction = *study_.correction;
     const std::string pass =
@@ -631,7 +631,7 @@ class Runner {
   Workers& workers_;
   Monitor& monitor_;
   ProductSink& sink_;
-  bool must_resume_;  ///< nothing was gone on with yet, and something has to be
+  bool must_resume_;  ///< the run has to resume a cut and has not done so yet
   std::optional<TetMesh> given_mesh_;
   MadeSkin made_skin_;
   MaterialSources sources_;

@@ -8,7 +8,7 @@
 namespace incise {
 namespace {
 
-/// Where a curve on the stretched surface lies in the unstretched body.
+/// Returns the place, in the unstretched body, of a curve on the stretched surface.
 Contour carried_to_rest(const Contour& curve, const TetMesh& mesh, std::span<const Vec3> stretched, double tolerance_mm) {
   const TetLocator locator(mesh, stretched);
   Contour rest{{}, curve.is_closed};
@@ -55,7 +55,7 @@ TissueModel tissue_of(const Case& settings, TetMesh mesh) {
 
 StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor) {
   StaticResult result = solve_static(model, StaticSettings{}, workers, monitor);
-  // The rotations are a warm start; from the identity, a state that was read from a file is the same as a fresh one.
+  // The rotations are only a warm start. From the identity, a state read from a file is the same as a fresh one.
   result.state.rotations.assign(model.mesh.tets.size(), Mat3::Identity());
   return result;
 }
@@ -64,8 +64,8 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
                                     const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,
                                     Workers& workers, Monitor& monitor, const MadeSkin& made_skin,
                                     const MaterialSources& sources) {
-  // The cut is planned on the stretched tissue, but the mesh is made of the unstretched body: a coarse mesh is stretched first to
-  // find where the planned cut lies at rest.
+  // The cut is planned on the stretched tissue, but the mesh is of the unstretched body: a coarse mesh is stretched
+  // first to find the planned cut at rest.
   SizingSettings sizing = default_lengths(longest_side_mm(occupancy));
   const double survey_mm = settings.meshing.survey_mm.value_or(sizing.coarse_mm);
   sizing.fine_mm = settings.meshing.fine_mm.value_or(sizing.fine_mm);
@@ -94,7 +94,7 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
 
 namespace {
 
-/// The tumour's edge on the stretched skin.
+/// Returns the tumour's edge on the stretched skin.
 Contour edge_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                 const SurfaceQuery& surface, Contour edge) {
   if (settings.tumor_configuration == TumorConfiguration::Rest) {
@@ -110,7 +110,7 @@ Contour edge_on(const Case& settings, const TissueModel& model, std::span<const 
   return project_tumor_edge(edge, surface, settings.plan.approach, settings.surface_tolerance_mm);
 }
 
-/// The refusal of a margin, with the greatest one that fits.
+/// Adds to the refusal of a margin the greatest one that fits.
 CaseError with_room(const CaseError& error, const MarginRoom& room) {
   Problem problem = error.problem();
   problem.hint = fmt::format("{}. {}", in_words(room), problem.hint);

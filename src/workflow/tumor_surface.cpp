@@ -7,7 +7,7 @@
 namespace incise {
 namespace {
 
-/// By how much each point of the drawn edge has to move along the approach to lie on the skin.
+/// Returns the move of each point of the drawn edge along the approach onto the skin, mm.
 std::vector<double> moves_of_edge(const Contour& edge, const SurfaceQuery& skin, const Vec3& approach) {
   std::vector<double> moves;
   for (std::size_t i = 0; i < edge.points.size(); ++i) {
@@ -22,8 +22,8 @@ std::vector<double> moves_of_edge(const Contour& edge, const SurfaceQuery& skin,
   return moves;
 }
 
-/// Moves a surface along the approach as the edge was moved: the mean of the edge's moves, weighted by the inverse
-/// square of the distance in the picture, so that a vertex on the edge moves with it.
+/// Moves a surface along the approach with the edge: by the mean of the edge's moves, weighted by the inverse square of
+/// the distance in the picture. A vertex on the edge moves with the edge.
 void place_with_edge(TriMesh& surface, const Contour& edge, const SurfaceQuery& skin, const Vec3& approach) {
   constexpr double kSamePlaceMm2 = 1e-12;
   const std::vector<double> moves = moves_of_edge(edge, skin, approach);

@@ -10,7 +10,7 @@
 
 namespace incise {
 
-/// How a parameter is drawn.
+/// The distribution from which a parameter is drawn.
 enum class DrawnAs {
   Uniform,    ///< between a and b
   Normal,     ///< mean a, standard deviation b, redrawn until within the limits
@@ -25,19 +25,20 @@ inline constexpr std::array<std::string_view, 3> kDrawnAsNames{"uniform", "norma
 template <class Specimen>
 struct HiddenParameter {
   std::string_view name;     ///< its key in a specimen file; units at the end
-  double Specimen::*member;  ///< the place it has
+  double Specimen::*member;  ///< its member of a specimen
   DrawnAs drawn_as;
-  double a, b;       ///< of the spread
-  double low, high;  ///< what a specimen file may say, both included
+  double a, b;       ///< of the distribution: see DrawnAs
+  double low, high;  ///< limits in a specimen file, both included
   std::string_view meaning;
-  std::string_view source;    ///< of value and spread; "chosen" where nobody has published one
-  std::string_view shows_in;  ///< the reading through which it shows; "none"
+  std::string_view source;    ///< of value and spread; "chosen" if none is published
+  std::string_view shows_in;  ///< the reading that reveals it, or "none"
 };
 
-/// A stream of random numbers of its own for each name (FNV-1a): a new parameter leaves the others as they were.
+/// Returns the seed of a separate random stream for each name (FNV-1a), so a new parameter does not change the others.
 [[nodiscard]] std::uint64_t stream_of(std::uint64_t seed, std::string_view name);
 
-/// A value at random, within the limits. @pre the limits hold a part of the spread.
+/// Returns a random value of the parameter. Normal and lognormal draws are repeated until one is within the limits; a
+/// uniform draw is not checked. @pre the limits contain a part of the distribution; for a uniform one, all of it.
 template <class Specimen>
 [[nodiscard]] double drawn(const HiddenParameter<Specimen>& spec, std::uint64_t seed) {
   Random random(stream_of(seed, spec.name));

@@ -7,10 +7,10 @@
 
 namespace incise {
 
-/// A smooth random number at every place: the sum of waves in random directions. Mean 0, standard deviation 1.
+/// A smooth random field in space: the sum of waves in random directions. Mean 0, standard deviation 1.
 class SmoothField {
  public:
-  /// @param wave_mm  the middle of the waves' lengths, which lie between 0.7 and 1.5 of it; > 0.
+  /// @param wave_mm  reference wavelength, > 0; the waves are 0.7 to 1.5 times as long.
   SmoothField(double wave_mm, Random& random);
   [[nodiscard]] double at(const Vec3& p) const;
 

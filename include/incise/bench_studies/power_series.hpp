@@ -16,11 +16,11 @@ namespace incise {
 
 /// A virtual specimen of a power series.
 struct PowerSubject {
-  std::string name;  ///< of its rows; no other has it
+  std::string name;  ///< of its rows; unique in the series
   Specimen specimen;
 };
 
-/// What is cut. Defaults: the paper's series [Paper, II-B.3].
+/// Cuts of a power series. Defaults: the paper's series [Paper, II-B.3].
 struct PowerRequest {
   std::vector<double> powers_w{25.0, 30.0, 35.0, 40.0};
   double speed_mm_s = 7.0;
@@ -35,25 +35,25 @@ inline void describe(Visitor& v, PowerRequest& r) {
   describe(v, r.limits);
   v("resolution", r.resolution, "Of the bench's meshes and steps.");
 }
-/// Every violation; empty: valid.
+/// Returns every violation; empty if the request is valid.
 [[nodiscard]] std::vector<Problem> validate(const PowerRequest& request);
 
-/// The key of a virtual cut: the specimen with all its hidden parameters, the bench's resolution, power, speed, the
-/// build and the instruction set. Its name is no part of it.
+/// Returns the cache key of a virtual cut: the specimen with all its hidden parameters, the bench's resolution, power,
+/// speed, the build and the instruction set. The specimen's name is not part of it.
 [[nodiscard]] CacheKey power_cut_key(const Specimen& specimen, const BenchResolution& resolution, double power_w,
                                      double speed_mm_s);
 
-/// What a series found. Virtual.
+/// Result of a power series. Virtual.
 struct PowerSeries {
-  std::vector<PowerCut> cuts;  ///< specimen by specimen, powers as they were asked for
+  std::vector<PowerCut> cuts;  ///< specimen by specimen, powers as requested
   PowerChoice choice;
   std::vector<PowerCut>
-      speed_cuts;        ///< likewise at the chosen power; empty where none was chosen or no speed asked for
-  std::size_t made = 0;  ///< cuts made now; the others were there already
+      speed_cuts;           ///< likewise at the chosen power; empty if none was chosen or no speed requested
+  std::size_t made = 0;     ///< cuts made now; the others were in the cache
   double speed_mm_s = 0.0;  ///< of the series
-  PowerLimits limits;       ///< that powers were judged by
+  PowerLimits limits;       ///< by which powers were judged
 };
-/// The keys of `power.json` (incise.power/1) that a series fills.
+/// Describes the keys of `power.json` (incise.power/1) that a series fills.
 inline void describe(Visitor& v, PowerSeries& s) {
   v.derived("verdict", std::string(s.choice.chosen_w ? "chosen" : "no_power_fits"), "Whether a power fits.");
   v({"chosen_w", "The lowest power that fits.", "W"}, s.choice.chosen_w);
@@ -65,13 +65,12 @@ inline void describe(Visitor& v, PowerSeries& s) {
   v.internal("made", s.made, "Cuts made now; the others were there already.");
 }
 
-/// Cuts every specimen of the virtual bench as planned at every power, chooses the lowest that fits (see choose_power),
-/// and cuts every specimen at that power at every speed. Cuts run side by side, one thread each; those that the cache
-/// has are not made again. A cut that fails is a row.
-/// @param subjects  at least one.
-/// @throws InvalidArgument for a request that is not valid; Cancelled when the monitor asks to stop: finished cuts are
-/// in
-///         the store.
+/// Cuts every specimen of the virtual bench as planned at every power, chooses the lowest power that fits (see
+/// choose_power), and cuts every specimen at that power at every speed. Cuts run side by side, one thread each; those
+/// in the cache are not repeated. A cut that fails is a row.
+/// @param subjects  at least one, each name once.
+/// @throws InvalidArgument for an invalid request or invalid subjects; Cancelled when the monitor asks to stop:
+/// finished cuts are in the cache.
 [[nodiscard]] PowerSeries run_power_series(const std::vector<PowerSubject>& subjects, const PowerRequest& request,
                                            Cache& kept, Workers& workers, Monitor& monitor);
 

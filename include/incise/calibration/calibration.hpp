@@ -26,38 +26,38 @@ inline constexpr std::array<std::string_view, 2> kCalibrationMethodNames{"paper"
   return kCalibrationMethodNames;
 }
 
-/// A cut that was carried out and photographed, as an evaluation has it.
+/// A photographed cut, as its evaluation measured it.
 struct PhotographedCut {
   std::string name;
   Contour incision;                       ///< inner edge, closed, mm
   Contour tumor_edge;                     ///< closed, mm, same frame
-  Vec3 approach = -Vec3::UnitZ();         ///< in which the camera looked, in that frame
+  Vec3 approach = -Vec3::UnitZ();         ///< direction in which the camera looked, same frame
   std::optional<double> stretch_force_n;  ///< measured pull of the specimen at its stretch, > 0
 };
 
-/// How well a specimen's simulated surface could be laid on its measured one.
+/// How well the simulated surface of a specimen fits its measured surface after registration.
 struct RegistrationQuality {
-  double rmse_mm = 0.0;
-  double scale = 1.0;  ///< of the measured surface over the simulated one
+  double rmse_mm = 0.0;  ///< root mean square of the remaining distances
+  double scale = 1.0;    ///< measured size over simulated size
 };
 inline void describe(Visitor& v, RegistrationQuality& r) {
   v({"rmse_mm", "Of the distances that are left.", "mm"}, r.rmse_mm, kAnatomyMm);
   v("scale", r.scale, "Of the measured surface over the simulated one.", {1e-3, 1e3});
 }
 
-/// What a calibration holds of one specimen.
+/// One specimen of a calibration.
 struct CalibratedSpecimen {
   std::string name;
   PhotographedErrors photographed;
-  std::optional<double> signed_mean_mm;             ///< of the photographed inner edge; absent: an older file
-  /// How far its path lay outside the planned one, mean; absent: it was cut along that.
+  std::optional<double> signed_mean_mm;  ///< mean signed error of the photographed inner edge; absent in older files
+  /// Mean distance by which the path that was cut lies outside the planned path; absent: the planned path was cut.
   std::optional<double> moved_mean_mm;
-  double youngs_modulus_kpa = 70.0;                 ///< reference: the case's, or what the measured force makes of it
-  double simulated_force_n = 0.0;                   ///< pull of the simulated specimen at the case's modulus
-  double stretch_mm = 0.0;                          ///< how far its end was displaced
-  std::optional<double> stretch_force_n;            ///< measured
-  std::optional<RegistrationQuality> registration;  ///< where it was given
-  std::optional<RingCovariates> ring;               ///< absent: an older file
+  double youngs_modulus_kpa = 70.0;       ///< reference: the case's modulus, or the one that the measured force implies
+  double simulated_force_n = 0.0;         ///< pull of the simulated specimen at the case's modulus
+  double stretch_mm = 0.0;                ///< how far its end was displaced
+  std::optional<double> stretch_force_n;  ///< measured
+  std::optional<RegistrationQuality> registration;  ///< absent: not given
+  std::optional<RingCovariates> ring;               ///< absent in older files
   PictureMatch picture;
   std::string held;  ///< digest of the held specimen, see calibration_run_key
   std::vector<CalibrationRun> runs;
@@ -65,7 +65,7 @@ struct CalibratedSpecimen {
 };
 void describe(Visitor& v, CalibratedSpecimen& specimen);
 
-/// A specimen that a fit could make nothing of.
+/// A specimen that a fit could not use.
 struct LeftOutSpecimen {
   std::string name;
   std::string reason;
@@ -75,32 +75,34 @@ inline void describe(Visitor& v, LeftOutSpecimen& s) {
   v("reason", s.reason, "Why it was left out.");
 }
 
+/// Result of a calibration.
 struct Calibration {
   CalibrationMethod method = CalibrationMethod::Fit;
   std::vector<CalibratedSpecimen> specimens;
-  std::vector<LeftOutSpecimen> left_out;  ///< of a fit; not among specimens
-  ScoreTable table;                       ///< of the n-th runs of all specimens
+  std::vector<LeftOutSpecimen> left_out;  ///< of a fit; not in `specimens`
+  ScoreTable table;                       ///< row n scores the n-th runs of all specimens
   std::optional<DragFit> fit;             ///< method fit
   std::optional<Identifiability> identifiability;
   std::optional<RunSetting> chosen;     ///< absent: every setting failed
-  std::optional<double> score_percent;  ///< of the chosen setting: the paper's, of a fit ScoreRow::inner_percent
+  std::optional<double> score_percent;  ///< of the chosen setting: ScoreRow::percent; of a fit ScoreRow::inner_percent
   double reference_step_s = 0.02;
   std::optional<CutRule>
-      cut_rule;                 ///< of all its simulated cuts; absent in files of version 0.1.0, which knew Tets alone
-  bool is_virtual = false;      ///< one specimen at least is
-  std::size_t simulations = 0;  ///< runs in all, those reused too
+      cut_rule;                 ///< of all simulated cuts; absent in files of version 0.1.0, which knew only Tets
+  bool is_virtual = false;      ///< at least one specimen is virtual
+  std::size_t simulations = 0;  ///< all runs, including reused ones
   Verdict verdict;              ///< `photo_specimen` for each photograph that may be of another specimen
 };
 
-/// `calibration.json`, incise.calibration/1: without the runs, whose figures are in its rows. Where it is read, a fit's
-/// weights have to add up to 1, and its fitted specimens to be those of the calibration.
+/// Describes `calibration.json`, incise.calibration/1. The file omits the runs; its rows hold their figures. When it is
+/// read, the weights of a fit's samples must add up to 1, and its fitted specimens must be those of the calibration.
 void describe(Visitor& v, Calibration& calibration);
 
-/// Mean over the ring of photographed less fitted signed error, mm. @pre lists of the same length, not empty.
+/// Returns the mean over the ring of the photographed minus the fitted signed error, mm. @pre lists of the same length,
+/// not empty.
 [[nodiscard]] double difference_mm(const SpecimenFit& fitted);
 
-/// Whether something was found to cut with: of a grid a setting that did not fail; of a fit, values at which the rings
-/// of more than half of all specimens closed, those that were left out counted as open.
+/// Returns whether the calibration found settings to cut with. Of a grid: a setting that did not fail. Of a fit: values
+/// at which the rings of more than half of all specimens closed; specimens that were left out count as open.
 [[nodiscard]] bool is_usable(const Calibration& calibration);
 
 }  // namespace incise

@@ -11,16 +11,16 @@
 
 namespace incise {
 
-/// Lengths of anatomy and of what cuts it: no tissue, tool or photograph is smaller or larger. mm
+/// Plausible lengths of tissue, tools and photographs, mm.
 inline constexpr Range kAnatomyMm{1e-9, 1e3};
-/// Signed distances of the same, mm.
+/// Plausible signed distances between them, mm.
 inline constexpr Range kAnatomyErrorMm{-1e3, 1e3};
 
-/// What one simulated cut of a calibration is made with, beside its case.
+/// Settings of one simulated cut of a calibration; everything else is the case's.
 struct RunSetting {
   double speed_mm_s = 13.0;        ///< of the simulated tool, > 0
-  double dullness = 9.0;           ///< contact needed before a tet goes, counted in reference steps, > 0
-  double stiffness_of_case = 1.0;  ///< Young's modulus over that of the case, > 0
+  double dullness = 9.0;           ///< contact that a tet needs before it is removed, in reference steps, > 0
+  double stiffness_of_case = 1.0;  ///< Young's modulus over the case's, > 0
   bool operator==(const RunSetting&) const = default;
 };
 inline void describe(Visitor& v, RunSetting& s) {
@@ -29,10 +29,10 @@ inline void describe(Visitor& v, RunSetting& s) {
   v("stiffness_of_case", s.stiffness_of_case, "Young's modulus over that of the case.", {1e-3, 1e3});
 }
 
-/// What is kept of one simulated cut.
+/// Stored result of one simulated cut.
 struct CalibrationRun {
   RunSetting setting;
-  double reference_step_s = 0.02;  ///< the time that one unit of dullness stands for
+  double reference_step_s = 0.02;  ///< time that one unit of dullness represents
   Outcome outcome = Outcome::NotConverged;
   std::string problem;  ///< why it could not be carried out; empty: it was
   bool closed_loop = false;
@@ -43,13 +43,14 @@ struct CalibrationRun {
   std::optional<Summary> inner_abs_error_mm;     ///< its absolute value
   std::optional<Contour> inner_edge;             ///< tool out, tissue still stretched, mm
   Contour final_tumor_edge;                      ///< likewise
-  std::optional<ClosedRing> ring;                ///< the shallowest that closed, whether or not the skin parted
+  std::optional<ClosedRing> ring;                ///< shallowest closed ring, whether or not the skin parted
   std::size_t tets = 0;
   double wall_s = 0.0;
 
-  /// How far tissue that the tool holds is drawn along before it parts, mm: speed · dwell.
+  /// Returns the drag length, mm: speed · dwell, the distance that the tool travels while it holds a tet.
   [[nodiscard]] double drag_length_mm() const { return setting.speed_mm_s * setting.dullness * reference_step_s; }
-  /// In the paper's sense: a closed ring with a negative margin, no point off by more than margin − radius.
+  /// Returns whether the cut failed in the paper's sense. A success is a closed ring with a negative margin whose every
+  /// point errs by at most margin − radius.
   [[nodiscard]] bool is_failure() const { return outcome != Outcome::Success || !paper_success; }
 };
 inline void describe(Visitor& v, CalibrationRun& r) {

@@ -11,16 +11,16 @@
 
 namespace incise {
 
-/// One photographed cut and what the simulation of that specimen says.
+/// One photographed cut, and the simulated response of its specimen.
 struct FitSpecimen {
   std::string name;
   std::vector<double> signed_error_mm;  ///< photographed, by sector
   DragResponse response;                ///< simulated, with as many sectors
-  double own_stiffness_sd = 0.0;        ///< of ln(Young's modulus), by which this specimen's reference may be off, >= 0
+  double own_stiffness_sd = 0.0;        ///< sd of ln(Young's modulus) of this specimen about its reference, >= 0
 };
 
-/// The prior, assumed before the photographs are considered. The drag length is uniform where all specimens were
-/// simulated.
+/// The prior of a fit, and how its posterior is reported. The prior of the drag length is uniform over the range in
+/// which all specimens were simulated.
 struct DragFitSettings {
   double stiffness_sd = 0.5;
   double bias_sd_mm = 0.5;
@@ -38,14 +38,14 @@ inline void describe(Visitor& v, DragFitSettings& s) {
   v("samples", s.samples, "Of the posterior.", {1.0});
 }
 
-/// What the data say about one parameter.
+/// Posterior of one parameter.
 struct ParameterEstimate {
   double mean = 0.0;
   double sd = 0.0;
   double low = 0.0;  ///< ends of the equal-tailed credible interval
   double high = 0.0;
   double prior_sd = 0.0;
-  std::vector<double> grid;     ///< places at which the marginal density is given
+  std::vector<double> grid;     ///< values at which the marginal density is given
   std::vector<double> density;  ///< integrates to 1
 };
 inline void describe(Visitor& v, ParameterEstimate& e) {
@@ -58,14 +58,14 @@ inline void describe(Visitor& v, ParameterEstimate& e) {
   v("density", e.density, "There; it integrates to 1.");
 }
 
-/// What simulation and photograph differ by, estimated from the data.
+/// Difference between photograph and simulation, estimated from the data. Standard deviations unless stated otherwise.
 struct ResidualEstimate {
-  double sd_mm = 0.0;            ///< along the contour
-  double correlation_deg = 0.0;  ///< angle over which the correlation falls to 1/e
-  double reading_mm = 0.0;       ///< from sector to sector, independent: reading of the photograph, grain of the mesh
-  double specimen_spread_mm = 0.0;  ///< sd of the bias from specimen to specimen about the common one
-  double placement_mm = 0.0;        ///< sd, along each axis of the picture, of the shift of a cut as a whole
-  double n_effective = 0.0;         ///< independent places that one contour is worth, for its mean
+  double sd_mm = 0.0;               ///< of the part that is correlated along the contour
+  double correlation_deg = 0.0;     ///< angle over which the correlation falls to 1/e
+  double reading_mm = 0.0;          ///< independent from sector to sector: reading of the photograph, grain of the mesh
+  double specimen_spread_mm = 0.0;  ///< of a specimen's bias about the common bias
+  double placement_mm = 0.0;        ///< of the shift of a whole cut, along each axis of the picture
+  double n_effective = 0.0;         ///< number of independent values that one contour is worth for its mean
 };
 inline void describe(Visitor& v, ResidualEstimate& r) {
   v({"sd_mm", "Along the contour.", "mm"}, r.sd_mm, kAnatomyMm);
@@ -77,10 +77,10 @@ inline void describe(Visitor& v, ResidualEstimate& r) {
 }
 
 struct PosteriorSample {
-  double weight = 0.0;  ///< all together 1
+  double weight = 0.0;  ///< the weights of all samples add up to 1
   double drag_length_mm = 0.0;
-  double stiffness_factor = 1.0;
-  double bias_mm = 0.0;  ///< to be added to simulated signed errors
+  double stiffness_factor = 1.0;  ///< Young's modulus over the specimen's reference
+  double bias_mm = 0.0;           ///< to be added to simulated signed errors
 };
 inline void describe(Visitor& v, PosteriorSample& s) {
   v("weight", s.weight, "All together 1.", {1e-300, 1.0 + 1e-6});
@@ -89,13 +89,14 @@ inline void describe(Visitor& v, PosteriorSample& s) {
   v({"bias_mm", "To be added to simulated signed errors.", "mm"}, s.bias_mm, {-10.0, 10.0});
 }
 
+/// The fit of one specimen: signed errors by sector.
 struct SpecimenFit {
   std::string name;
   std::vector<double> observed_mm;
   std::vector<double> fitted_mm;       ///< at the posterior means
   double rms_mm = 0.0;                 ///< of their difference
-  std::vector<double> simulated_mm;    ///< cut anew at those values, without the bias; empty: not done, or no ring
-  std::optional<double> check_rms_mm;  ///< between that and what the straight lines say
+  std::vector<double> simulated_mm;    ///< of a new cut at those values, without the bias; empty: not cut, or open
+  std::optional<double> check_rms_mm;  ///< of simulated_mm + bias − fitted_mm: the error of interpolation
 };
 inline void describe(Visitor& v, SpecimenFit& s) {
   v("name", s.name, "Of the specimen.");
@@ -111,7 +112,7 @@ struct DragFit {
   ParameterEstimate drag_length_mm;
   ParameterEstimate ln_stiffness;
   ParameterEstimate bias_mm;
-  Mat3 correlation = Mat3::Identity();  ///< in that order
+  Mat3 correlation = Mat3::Identity();  ///< of the three, in that order
   ResidualEstimate residual;
   std::vector<PosteriorSample> samples;
   std::vector<SpecimenFit> specimens;
@@ -120,12 +121,13 @@ struct DragFit {
 
 /// Fits the simulated signed errors to the photographed ones, sector by sector:
 ///   y_s(θ) = m_s(θ; L, κ) + b + δ_s + u_s cos θ + v_s sin θ + r_s(θ),
-/// δ_s from specimen to specimen, (u_s, v_s) by where arm and projection placed the cut, r_s correlated along the ring.
-/// The sizes of δ, (u, v) and r and the correlation of r are integrated over, not chosen. Everything is on grids: no
-/// random number is drawn. The simulation's waves of more than four per turn are ignored: they are its
-/// mesh's grain, and tell how much of that is in the slower ones. See docs/models/calibration.md.
-/// @throws InvalidArgument without specimens, for settings or profiles that do not fit, or where the ranges of drag
-/// length of the specimens do not overlap.
+/// with drag length L, stiffness factor κ and bias b. For specimen s, δ_s is its own bias, (u_s, v_s) the shift of the
+/// cut by arm and projection, and r_s a residual that is correlated along the ring. The fit integrates over the sizes
+/// of δ, (u, v) and r and over the correlation of r. It works on grids and draws no random number. Simulated waves of
+/// more than four per turn are the mesh's grain: they are ignored, except to estimate the grain in the slower waves.
+/// See docs/models/calibration.md.
+/// @throws InvalidArgument without specimens, for settings or spreads out of range, for profiles that differ in their
+/// number of sectors, or if the specimens' ranges of drag length do not overlap.
 [[nodiscard]] DragFit fit_drag(const std::vector<FitSpecimen>& specimens, const DragFitSettings& settings = {});
 
 }  // namespace incise

@@ -10,11 +10,11 @@
 
 namespace incise {
 
-/// How much the data say of a parameter.
+/// How well the data identify a parameter.
 enum class Identified {
-  Apart,   ///< its posterior sd is at most half that of the prior
+  Apart,   ///< posterior sd at most half the prior's
   Partly,  ///< at most nine tenths
-  Not,     ///< more: what one has is the prior
+  Not,     ///< more: the estimate is the prior
 };
 inline constexpr std::array<std::string_view, 3> kIdentifiedNames{"apart", "partly", "not"};
 [[nodiscard]] constexpr Names names_of(Identified) {
@@ -25,9 +25,9 @@ struct ParameterVerdict {
   std::string name;  ///< drag_length, stiffness, bias
   Identified told = Identified::Not;
   double share_of_prior_sd = 1.0;
-  std::string tied_to;  ///< the other parameter with which it is correlated by at least 0.7 either way; empty: none
-  double correlation = 0.0;  ///< with that one; 0: with none
-  bool is_at_limit = false;  ///< the interval ends where the simulations end: the truth may lie beyond
+  std::string tied_to;       ///< parameter with the strongest correlation, if at least 0.7 in magnitude; empty: none
+  double correlation = 0.0;  ///< with that parameter; 0: none
+  bool is_at_limit = false;  ///< drag length only: interval ends where the simulations end; the truth may lie beyond
 };
 inline void describe(Visitor& v, ParameterVerdict& p) {
   v.bulk("name", p.name, "Of the parameter.");
@@ -40,12 +40,13 @@ inline void describe(Visitor& v, ParameterVerdict& p) {
   v("at_limit", p.is_at_limit, "Whether its interval ends where the simulations end.");
 }
 
-/// Which of drag length, stiffness and bias the photographs can tell apart, and the same in plain sentences.
+/// How well the photographs identify drag length, stiffness and bias (in this order), and the same in sentences.
 struct Identifiability {
   std::array<ParameterVerdict, 3> parameters;
   std::vector<std::string> sentences;
 };
 
+/// Returns how well a fit identifies each parameter.
 [[nodiscard]] Identifiability identifiability(const DragFit& fit);
 
 }  // namespace incise

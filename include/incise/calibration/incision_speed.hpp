@@ -8,7 +8,7 @@
 
 namespace incise {
 
-/// What a straight cut may measure, mm, and how fast anyone cuts tissue, mm/s.
+/// Plausible lengths of a timed straight cut, mm, and plausible cutting speeds, mm/s.
 inline constexpr double kShortestTimedCutMm = 1.0, kLongestTimedCutMm = 2000.0;
 inline constexpr double kSlowestCutMmS = 0.5, kFastestCutMmS = 50.0;
 
@@ -18,14 +18,14 @@ struct TimedCut {
   double time_s = 0.0;     ///< > 0
 };
 
-/// How fast a surgeon cuts.
+/// Cutting speed of a surgeon.
 struct SpeedEstimate {
   std::size_t cuts = 0;
-  double mean_mm_s = 0.0;  ///< of the cuts' speeds, each counted once however long it is
+  double mean_mm_s = 0.0;  ///< mean of the cuts' speeds; each cut counts once, whatever its length
   double min_mm_s = 0.0, max_mm_s = 0.0;
   std::optional<double> sample_sd_mm_s;  ///< divided by n - 1; absent for a single cut
   double population_sd_mm_s = 0.0;       ///< divided by n: what the paper prints
-  double recommended_mm_s = 0.0;         ///< the mean to a whole mm/s; below 1 mm/s to one digit
+  double recommended_mm_s = 0.0;         ///< the mean rounded to a whole mm/s; below 1 mm/s to one significant digit
 };
 inline void describe(Visitor& v, SpeedEstimate& e) {
   v("cuts", e.cuts, "How many.");
@@ -37,7 +37,8 @@ inline void describe(Visitor& v, SpeedEstimate& e) {
   v({"recommended_mm_s", "The mean to a whole mm/s; below 1 mm/s to one digit.", "mm/s"}, e.recommended_mm_s);
 }
 
-/// Speed from timed straight cuts. @throws InvalidArgument naming the first cut that is none; without cuts.
+/// Estimates a surgeon's speed from timed straight cuts.
+/// @throws InvalidArgument without cuts, or naming the first cut whose length or time is not above 0.
 /// Source: [Paper, II-B.1]: six cuts of 10 cm, 7.22 ± 1.89 mm/s, rounded to 7.
 [[nodiscard]] SpeedEstimate estimate_speed(std::span<const TimedCut> cuts);
 

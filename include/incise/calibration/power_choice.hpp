@@ -10,14 +10,14 @@
 
 namespace incise {
 
-/// What was seen of one specimen cut at one power and one speed.
+/// Measurements of one specimen, cut at one power and one speed.
 struct PowerCut {
   std::string specimen;
   double power_w = 0.0;                     ///< of the generator, > 0
   double speed_mm_s = 0.0;                  ///< of the tool, > 0
   Outcome outcome = Outcome::NotConverged;  ///< Success: the ring is closed
   std::string problem;                      ///< why there is no cut at all; empty: there is one
-  std::optional<double> bulge_mm;           ///< how high skin ahead of the tool stands above the uncut surface, >= 0
+  std::optional<double> bulge_mm;           ///< height of the skin ahead of the tool above the uncut surface, >= 0
   std::optional<double> thermal_width_mm;   ///< how far beside the tool's axis heat damaged tissue, >= 0
   std::optional<double> mean_abs_error_mm;  ///< of the inner edge; absent: the ring is open
 };
@@ -33,7 +33,7 @@ inline void describe(Visitor& v, PowerCut& c) {
   v("mean_abs_error_mm", c.mean_abs_error_mm, "Of the inner edge; absent: the ring is open.", kNotNegative);
 }
 
-/// What is taken for too much. The paper judged both by eye.
+/// Greatest acceptable bulge and thermal width. The paper judged both by eye.
 struct PowerLimits {
   double bulge_limit_mm = 1.2;
   double damage_limit_mm = 1.0;
@@ -72,12 +72,12 @@ struct PowerChoice {
   std::vector<PowerVerdict> powers;  ///< ascending
 };
 
-/// The lowest power at which every ring is closed and neither bulge nor thermal width of any specimen exceeds its limit
-/// (a value that equals it does not). Powers are judged one by one: that a lower one bulges more is not assumed.
-/// @param cuts  every specimen once at every power, all at one speed; a closed ring has bulge and width. Any order.
-/// @throws InvalidArgument for cuts that are not so, for numbers that are not finite or below their range, and for
-/// limits
-///         that are not valid.
+/// Chooses the lowest power at which every ring is closed and no specimen's bulge or thermal width exceeds its limit (a
+/// value equal to its limit is accepted). Each power is judged by itself: a lower power is not assumed to bulge more.
+/// @param cuts  every specimen once at every power, all at one speed, in any order; a closed ring has a bulge and a
+/// width.
+/// @throws InvalidArgument for cuts that break these rules, for numbers that are not finite or out of range, and for
+/// invalid limits.
 /// Source: [Paper, II-B.3]: "the lowest effective power", four tongues, judged by eye.
 [[nodiscard]] PowerChoice choose_power(std::span<const PowerCut> cuts, const PowerLimits& limits);
 

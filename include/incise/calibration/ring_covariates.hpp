@@ -11,17 +11,17 @@
 
 namespace incise {
 
-/// In what a ring, its tissue and its cut differ from others: all of it is known before the cut.
+/// Covariates of a ring: quantities in which rings, tissues or cuts differ, all known before the cut.
 struct RingCovariates {
-  double radius_mm = 0.0;           ///< of the circle with the area inside the tumour edge, seen along the approach
-  double outline = 1.0;             ///< length of the edge over that circle's, >= 1
-  double along = 0.5;               ///< where the edge's middle lies along the pull, from end to end of the body
-  double aside_mm = 0.0;  ///< how far across the pull it lies from the body's middle, positive to the left in the view
-  double youngs_modulus_kpa = 0.0;  ///< by the pull, where it was measured
-  double lateral_margin_mm = 0.0;   ///< prescribed, as the next two
+  double radius_mm = 0.0;  ///< of the circle with the area inside the tumour edge, seen along the approach
+  double outline = 1.0;    ///< length of the edge over the circumference of that circle, >= 1
+  double along = 0.5;      ///< place of the edge's middle along the pull: 0 to 1 from end to end of the body
+  double aside_mm = 0.0;   ///< distance of that middle from the body's middle, across the pull; positive to its left
+  double youngs_modulus_kpa = 0.0;  ///< implied by the measured pull; without one, the case's
+  double lateral_margin_mm = 0.0;   ///< prescribed, like the next two
   double depth_mm = 0.0;
   double speed_mm_s = 0.0;
-  // Directions in the view, counter-clockwise from its x; no covariates.
+  // Directions in the view, counter-clockwise from its x; not covariates.
   double start_deg = 0.0;  ///< from the edge's middle to where the cut starts
   double pull_deg = 90.0;  ///< of the pull
 };
@@ -47,12 +47,12 @@ inline constexpr std::array<std::string_view, 8> kRingCovariateNames{
 using CovariateValues = std::array<double, kRingCovariateNames.size()>;
 [[nodiscard]] CovariateValues values_of(const RingCovariates& ring);
 
-/// Which covariates of a ring lie outside the 10th to 90th percentile of others, the outline left out. Percentiles are
-/// interpolated between neighbours in order.
-/// @returns places in kRingCovariateNames. @throws InvalidArgument without others.
+/// Finds the covariates of a ring that lie outside the 10th to 90th percentile of the others', except the outline.
+/// Percentiles are interpolated between neighbours in order.
+/// @returns indices into kRingCovariateNames. @throws InvalidArgument without others.
 [[nodiscard]] std::vector<std::size_t> outside_covariates(const RingCovariates& ring,
                                                           std::span<const RingCovariates> others);
-/// With so many of them outside, a ring is unlike the others (docs/models/second_bench.md, Frozen).
+/// A ring with at least this many covariates outside is unlike the others (docs/models/second_bench.md, Frozen).
 inline constexpr std::size_t kUnlikeFrom = 2;
 
 }  // namespace incise

@@ -7,12 +7,12 @@
 
 namespace incise {
 
-/// What photographs alone say of the next cut: their signed errors, averaged over specimens. Sectors are those of
-/// error_profile.
+/// Mean signed errors of the photographed specimens: the forecast of the next cut from photographs alone. Sectors are
+/// those of error_profile.
 struct PhotographedProfile {
-  double constant_mm = 0.0;         ///< over all sectors
+  double constant_mm = 0.0;         ///< mean over all sectors
   std::vector<double> mean_mm;      ///< by sector
-  std::vector<double> smoothed_mm;  ///< of mean_mm, waves of at most four to a turn
+  std::vector<double> smoothed_mm;  ///< mean_mm in waves of at most four per turn
 };
 inline void describe(Visitor& v, PhotographedProfile& p) {
   v({"constant_mm", "Mean signed error of all photographs.", "mm"}, p.constant_mm);
@@ -20,14 +20,14 @@ inline void describe(Visitor& v, PhotographedProfile& p) {
   v({"smoothed_mm", "Of mean_mm, the waves of at most four to a turn.", "mm"}, p.smoothed_mm);
 }
 
-/// What photographs say of the next cut beyond the simulation and its bias. A real cut along the planned path is
-/// expected to err by simulated_share · (simulated error + bias) + mean_mm, sector by sector.
+/// What photographs show beyond the simulation and its bias. A real cut along the planned path is expected to err by
+/// simulated_share · (simulated error + bias) + mean_mm, sector by sector.
 struct ResidualProfile {
-  double simulated_share = 1.0;     ///< how much photographs differ between specimens per simulated difference
-  double simulated_share_sd = 0.0;  ///< with which it is known
+  double simulated_share = 1.0;     ///< photographed difference between specimens per simulated difference
+  double simulated_share_sd = 0.0;  ///< standard deviation of that estimate
   std::vector<double> mean_mm;      ///< by sector
-  double sd_mm = 0.0;               ///< of what the specimens have in common, as it is known, in every sector
-  double amplitude_mm = 0.0;        ///< standard deviation of the residual that they have in common, estimated
+  double sd_mm = 0.0;               ///< standard deviation of the estimated common residual, the same in every sector
+  double amplitude_mm = 0.0;        ///< standard deviation of the common residual along the ring, estimated
   double correlation_deg = 0.0;     ///< angle over which its correlation falls to 1/e, estimated
 };
 inline void describe(Visitor& v, ResidualProfile& p) {
@@ -42,18 +42,20 @@ inline void describe(Visitor& v, ResidualProfile& p) {
   v({"correlation_deg", "Angle over which its correlation falls to 1/e.", "deg"}, p.correlation_deg);
 }
 
-/// @throws InvalidArgument without specimens, or where their numbers of sectors differ.
+/// Returns the mean photographed profile of the specimens.
+/// @throws InvalidArgument without specimens, or if their numbers of sectors differ.
 [[nodiscard]] PhotographedProfile photographed_profile(const std::vector<SpecimenFit>& specimens);
 
-/// Model, with y_s the photographed and m_s the fitted errors of specimen s, m their mean over specimens:
+/// Estimates what photographs show beyond the simulation. The model, with y_s the photographed and m_s the fitted
+/// errors of specimen s, and m the mean of m_s over specimens:
 ///     y_s(θ) = m(θ) + β (m_s(θ) − m(θ)) + f(θ) + g_s(θ),    β ~ N(1, 0.5²),  f ~ GP(0, a² exp(−angle/ρ)),
-/// and g_s independent from specimen to specimen. In the spectrum of the ring every covariance is diagonal. The fit's
-/// ResidualEstimate, which takes all of the residual for a specimen's own, is the variance T of both together: with A
-/// that of f, each wave of g_s has B = T − A, at least the reading's. What differs between specimens tells β, by
-/// weighted least squares, and B; what they have in common tells f: each wave of the specimens' mean residual is shrunk
-/// by A/(A + B/n). a and ρ are integrated over on a grid. Then mean_mm = f + (1 − β) m. Without photographs it is the
-/// simulation (β = 1, f = 0); where simulated differences tell nothing of photographed ones, and specimens are many, it
-/// comes to the photographs' mean.
+/// with g_s independent from specimen to specimen. In the spectrum of the ring every covariance is diagonal. The fit's
+/// ResidualEstimate, which attributes the whole residual to the specimen, gives the variance T of f and g_s together:
+/// with A the variance of f, each wave of g_s has B = T − A, but at least the reading's variance. The differences
+/// between specimens determine β, by weighted least squares, and B. Their common part determines f: each wave of the
+/// specimens' mean residual is shrunk by A/(A + B/n). a and ρ are integrated over on a grid. Then mean_mm = f + (1 − β)
+/// m. Without photographs the result would be the simulation (β = 1, f = 0); if simulated differences say nothing of
+/// photographed ones, and specimens are many, it approaches the photographs' mean.
 /// Source: [RasmussenWilliams2006, 2.2, 2.7 and 5.4.1]. @note O(specimens · sectors² + grid · sectors).
 /// @throws InvalidArgument as photographed_profile, or for a fit without a residual.
 [[nodiscard]] ResidualProfile residual_profile(const DragFit& fit);

@@ -9,7 +9,7 @@ namespace incise {
 
 /// A tissue that is simulated for the next specimen.
 struct TissueScenario {
-  double weight = 0.0;  ///< all together 1
+  double weight = 0.0;  ///< the weights of all scenarios add up to 1
   double drag_length_mm = 0.0;
   double stiffness_factor = 1.0;  ///< Young's modulus over the specimen's reference
   double bias_mm = 0.0;           ///< expected; to be added to simulated signed errors
@@ -21,11 +21,13 @@ inline void describe(Visitor& v, TissueScenario& t) {
   v({"bias_mm", "Expected; to be added to simulated signed errors.", "mm"}, t.bias_mm);
 }
 
-/// The tissue that a posterior expects, the first; and, where the specimen's own stiffness is not known, one softer and
-/// one stiffer by √3 standard deviations, with weights of 2/3, 1/6 and 1/6. How far real cuts lie from what it says is
-/// not varied here: photographs tell that (RingForecaster).
-/// @param own_stiffness_sd  of ln(stiffness factor), by which this specimen may differ from its reference, >= 0.
-/// @throws InvalidArgument without samples, for weights that are not above 0, or a spread below 0.
+/// Returns the tissues to simulate for the next specimen. The first is the one that the posterior expects. If the
+/// specimen's own stiffness is uncertain, a softer and a stiffer one follow, by √3 standard deviations, and the weights
+/// are 2/3, 1/6 and 1/6. How far real cuts differ from the simulation is not varied here: photographs determine it
+/// (RingForecaster).
+/// @param own_stiffness_sd  of ln(stiffness factor) of this specimen about its reference, >= 0.
+/// @throws InvalidArgument without samples, for a weight, drag length or stiffness that is not above 0, or a spread
+/// below 0.
 [[nodiscard]] std::vector<TissueScenario> tissue_scenarios(const std::vector<PosteriorSample>& samples,
                                                            double own_stiffness_sd);
 

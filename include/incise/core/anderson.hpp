@@ -9,17 +9,19 @@
 
 namespace incise {
 
-// Anderson's acceleration, type II, of a fixed-point iteration x -> F(x) = x + f(x): what earlier points tell about how
-// f changes with x says where to go beside the plain step. Source: [WalkerNi2011], algorithm AA.
+// Anderson acceleration, type II, of a fixed-point iteration x -> F(x) = x + f(x): corrects the plain step by the
+// changes of f between earlier points. Source: [WalkerNi2011], algorithm AA.
 
-/// The combination of earlier changes of f that comes nearest to f: one weight for each column of `changes`.
+/// Returns the combination of earlier changes of f that is nearest to f: one weight for each column of `changes`.
+/// @param changes  n x m: differences of f between points.
+/// @param f  n values.
 /// @param noise  rms noise of the entries of f, >= 0: changes within it are damped (Tikhonov). nullopt: plain least
 /// squares.
 template <int Rows>
 [[nodiscard]] Eigen::VectorXd anderson_weights(const Eigen::Matrix<double, Rows, Eigen::Dynamic>& changes,
                                                const Eigen::Matrix<double, Rows, 1>& f, std::optional<double> noise) {
   if (!noise) return changes.colPivHouseholderQr().solve(f);
-  // Each column's own noise is what a change of f that says nothing would look like.
+  // A difference of two noisy values of f has this expected squared norm from the noise alone.
   Eigen::MatrixXd normal = changes.transpose() * changes;
   normal.diagonal().array() += 2.0 * *noise * *noise * static_cast<double>(f.size()) + 1e-12 * normal.trace();
   return normal.ldlt().solve(changes.transpose() * f);
@@ -31,19 +33,21 @@ struct IterationPoint {
   std::vector<double> f;
 };
 
-/// Where to go from `base`: the plain step base.x + base.f, corrected by the other points.
-/// @param earlier  any number of other points; none: the plain step.  @param noise  as above.
+/// Returns the next x after `base`: the plain step base.x + base.f, corrected by the other points.
+/// @param earlier  any number of other points, of the same size; none: the plain step.
+/// @param noise  rms noise of the entries of f, >= 0.
 [[nodiscard]] std::vector<double> accelerated_step(const IterationPoint& base, std::span<const IterationPoint> earlier,
                                                    double noise);
 
-/// An iteration in a few unknowns that is followed step by step, without noise: the next x is the combination of the
-/// last steps' images whose combined step is least. A step that grows makes it forget.
+/// Accelerates an iteration in a few unknowns step by step, without noise. The next x combines the images of the last
+/// steps with the weights that make the combined step least. If a step is more than 1.5 times as long as the last one,
+/// the history is dropped.
 template <int Unknowns>
 class Anderson {
  public:
   using Vector = Eigen::Matrix<double, Unknowns, 1>;
 
-  /// @param depth  steps that are remembered.
+  /// @param depth  number of changes between steps that are kept.
   explicit Anderson(std::size_t depth = 5) : depth_(depth) {}
 
   void forget() {
@@ -52,11 +56,11 @@ class Anderson {
     has_last_ = false;
   }
 
-  /// Where to go on after F took x to `image`.
+  /// Returns the next x, given x and its image F(x).
   [[nodiscard]] Vector next(const Vector& x, const Vector& image) {
     const Vector step = image - x;
     if (has_last_ && step.norm() > 1.5 * last_step_.norm())
-      forget();  // the combination has misled: begin again from a plain step
+      forget();  // the combination misled: restart with a plain step
     if (has_last_) {
       step_changes_.push_back(step - last_step_);
       image_changes_.push_back(image - last_image_);

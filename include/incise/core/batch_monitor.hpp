@@ -10,14 +10,17 @@
 
 namespace incise {
 
-/// The progress of computations that go side by side, as one. Any thread may note; only the thread that made this
-/// object tells the outer monitor, as a Monitor is promised. The outer monitor has to outlive it.
+/// Combined progress of jobs that run side by side: the mean of their fractions. Any thread may call `note`, but only
+/// calls from the thread that created this object reach the outer monitor, as Monitor requires. The outer monitor must
+/// outlive this object.
 class BatchProgress {
  public:
-  /// @param stage  the stage that the outer monitor is given: "cutting".
+  /// @param jobs   number of jobs.
+  /// @param stage  name that is reported to the outer monitor, such as "cutting".
   BatchProgress(std::size_t jobs, std::string stage, Monitor& outer);
 
-  /// @param fraction  of this job, in [0, 1], never less than before.
+  /// Records the progress of one job.
+  /// @param fraction  done so far of this job, in [0, 1], never less than before.
   void note(std::size_t job, double fraction);
   [[nodiscard]] bool is_cancelled() const { return outer_.is_cancelled(); }
 
@@ -28,7 +31,7 @@ class BatchProgress {
   std::thread::id caller_ = std::this_thread::get_id();
 };
 
-/// What one of them is given for a monitor: its progress counts, its messages it keeps to itself.
+/// Monitor of one job: passes its progress to the batch and discards its messages.
 class JobMonitor : public Monitor {
  public:
   JobMonitor(BatchProgress& batch, std::size_t job) : batch_(batch), job_(job) {}

@@ -10,9 +10,9 @@ inline constexpr double kCloseMarginMm = 2.2;
 inline constexpr double kLateralMarginMm = 5.0;
 /// Intended depth of the tool's tip below the surface, along its axis, mm. Source: the paper, II-A.
 inline constexpr double kPlannedDepthMm = 5.0;
-/// Of the paper's needle electrode, mm: half of an ideal kerf's width. Source: the paper, II-B.2.
+/// Radius of the paper's needle electrode, mm: half of an ideal kerf's width. Source: the paper, II-B.2.
 inline constexpr double kElectrodeRadiusMm = 0.5;
-/// How far a ring is cut beyond its start, mm: with less it may stay open.
+/// Overlap: distance that a ring is cut beyond its start, mm. With less, the ring may stay open.
 inline constexpr double kRingOverlapMm = 8.0;
 
 }  // namespace incise

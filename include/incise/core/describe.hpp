@@ -40,7 +40,9 @@ inline constexpr Range kNotNegative{0.0, std::numeric_limits<double>::infinity()
 /// "a number above 0", "a number in [0, 0.5)".
 [[nodiscard]] std::string describe(const Range& range);
 
-/// An integer that a visitor is given. @param range  of the field: an unsigned one above 2^63 is passed as its bits.
+/// Returns an integer field as a number.
+/// @param value  as a visitor receives it. An unsigned value above 2^63 - 1 arrives as its bits, so it is negative.
+/// @param range  of the field, which shows whether the field is unsigned.
 [[nodiscard]] inline double as_number(std::int64_t value, const Range& range) {
   const bool is_large = value < 0 && range.least >= 0.0 && range.most > 9.3e18;
   return is_large ? static_cast<double>(static_cast<std::uint64_t>(value)) : static_cast<double>(value);
@@ -51,24 +53,24 @@ struct Field {
   std::string_view name;
   std::string_view meaning = {};
   std::string_view unit = {};
-  std::string_view pattern = {};  ///< regular expression that a text matches
-  bool is_omitted = false;        ///< a summary leaves it out where it is absent, and holds no null for it
+  std::string_view pattern = {};  ///< regular expression for a text; only the schema states it
+  bool is_omitted = false;        ///< a summary has no key for an absent value, instead of a null
 };
 
-/// Numbers of one kind, side by side in memory: a table with `columns` numbers in each row.
+/// Numbers of one kind, contiguous in memory: a table with `columns` numbers in each row.
 struct Block {
   enum class Kind : std::uint8_t { Double, Float, Int32, Int16, UInt8 };
   Kind kind = Kind::Double;
   void* data = nullptr;
-  std::size_t count = 0;
+  std::size_t count = 0;  ///< numbers in all rows
   std::size_t columns = 1;
-  Range range = kAny;         ///< of each number that people write; binary files may hold any
-  bool is_direction = false;  ///< three numbers whose length does not matter: see core/direction.hpp
+  Range range = kAny;         ///< allowed for each number; not checked in binary files
+  bool is_direction = false;  ///< a vector whose length does not matter: see core/direction.hpp
 };
 
 class Visitor;
 
-/// One walk over every field of a value. A type is described once, beside its declaration:
+/// Walks over every field of a value. A type is described once, beside its declaration:
 ///
 ///     inline void describe(Visitor& v, Bond& b) {
 ///       v("tet", b.tet, "The tet that is held.");
@@ -76,45 +78,49 @@ class Visitor;
 ///     }
 ///
 /// Files, keys, comparison, schema and reports are visitors of this description, so none of them can miss a field.
-/// A visitor either sets values or only shows them; one that only shows may be given a constant.
+/// A visitor either sets values, or only shows them (writes, checks or lists them) and never changes them.
 class Visitor {
  public:
-  /// What a visitor may return instead of a size or a place.
+  /// Values that a visitor may return instead of a size or a place.
   static constexpr std::size_t kUnchanged = std::numeric_limits<std::size_t>::max();  ///< a list stays as it is
   static constexpr std::size_t kEveryKind = kUnchanged - 1;  ///< show one item or value of each possible kind
 
   virtual ~Visitor() = default;
 
-  /// Whether values are set, not shown.
+  /// Whether the visitor sets values; otherwise it only shows them.
   [[nodiscard]] virtual bool sets() const = 0;
   /// Whether the visitor makes a summary for people and programs, such as a JSON file: see bulk and derived.
   [[nodiscard]] virtual bool is_summary() const { return false; }
-  virtual void begin(const Field& field) = 0;  ///< a described value inside another one begins
+  virtual void begin(const Field& field) = 0;  ///< begins a described value; `end` ends it
   virtual void end() = 0;
-  /// The items follow, then end_list. @param size  number shown. @param item_bytes  least size of an item in memory.
-  /// @returns how many there are, or kUnchanged, or kEveryKind
+  /// Begins a list: its items follow, then end_list.
+  /// @param size  number of items that the value has now.  @param item_bytes  least size of an item, bytes.
+  /// @returns the number of items to visit, kUnchanged or kEveryKind
   virtual std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) = 0;
   virtual void end_list() = 0;
-  /// Comes before a value that may be absent. @returns whether it is present. A visitor that only shows may return true
-  /// for an absent value; it is then shown a default one
+  /// Called before a value that may be absent.
+  /// @returns whether it is present. A visitor that only shows values may return true for an absent one and then
+  /// receives a default
   virtual bool optional(const Field& field, bool is_there) = 0;
   virtual void number(const Field& field, double& value, const Range& range) = 0;
   virtual void integer(const Field& field, std::int64_t& value, const Range& range) = 0;
   virtual void flag(const Field& field, bool& value) = 0;
   virtual void text(const Field& field, std::string& value) = 0;
-  /// One of `names`; `value` is its place among them.
+  /// One of `names`; `value` is its index among them.
   virtual void choice(const Field& field, std::size_t& value, Names names) = 0;
   virtual void block(const Field& field, const Block& block) = 0;
-  /// Which of these fields the group has: it must have exactly one, which is visited next. @param place  set to the
-  /// first field present; or kEveryKind: visit all; or kUnchanged: none. @returns how many are present
+  /// Finds which of these fields a group has. It must have exactly one, which is visited next.
+  /// @param place  set to the index of the first field present, to kEveryKind (visit all), or to kUnchanged (the whole
+  /// group is absent).
+  /// @returns how many are present
   virtual std::size_t key(std::size_t& place, std::span<const Field> keys);
-  /// A field that is only shown, while values are set: what is read may hold it.
+  /// Called, while values are set, for a field that is only shown (see derived): the file may contain it.
   virtual void pass_over(const Field& /*field*/) {}
-  /// Whether everything is walked that determines a result. A file that people write names files in place of what they
-  /// hold, and lacks what only code may choose.
+  /// Whether the visitor walks everything that determines a result. Visitors of files that people write do not: such a
+  /// file names other files instead of containing them, and lacks the fields that only code may set (see internal).
   [[nodiscard]] virtual bool is_complete() const { return true; }
-  /// Refuses what was read. @throws DataError, or CaseError where a case is read, naming the place.
-  /// A visitor that only shows throws InvalidArgument: the description is wrong.
+  /// Refuses a value that was read. @throws DataError, or CaseError where a case is read, naming the place.
+  /// A visitor that only shows values throws InvalidArgument: the description is wrong.
   [[noreturn]] virtual void refuse(const Field& field, const std::string& found, const std::string& expected) const;
 
   template <class T>
@@ -125,7 +131,7 @@ class Visitor {
   void operator()(const Field& field, T& value, const Range& range = kAny) {
     visit(field, value, range);
   }
-  /// A field that no file sets.
+  /// A field that people cannot set in a file: skipped unless is_complete().
   template <class T>
   void internal(std::string_view name, T& value, std::string_view meaning = {}, const Range& range = kAny) {
     if (is_complete()) visit(Field{name, meaning}, value, range);
@@ -134,14 +140,14 @@ class Visitor {
   void direction(std::string_view name, Eigen::Vector3d& value, std::string_view meaning = {}) {
     block(Field{name, meaning}, {Block::Kind::Double, value.data(), 3, 3, kAny, true});
   }
-  /// Which alternative a variant holds, by its name.
+  /// The alternative that a variant holds, by its name.
   template <class... T>
   void kind(const Field& field, std::variant<T...>& value) {
     std::size_t place = value.index();
     choice(field, place, names_of(value));
     if (sets()) emplace(value, place);
   }
-  /// Makes a variant hold the default of one of its alternatives.
+  /// Sets a variant to the default of one of its alternatives.
   template <class... T>
   static void emplace(std::variant<T...>& value, std::size_t place) {
     std::size_t i = 0;
@@ -204,7 +210,7 @@ inline constexpr bool kIsShared = false;
 template <class T>
 inline constexpr bool kIsShared<std::shared_ptr<const T>> = true;
 
-/// How a list of these lies in memory: as numbers side by side, or (nullopt) not.
+/// Returns the kind and count of the numbers that a T consists of; nullopt if it is not contiguous numbers of one kind.
 template <class T>
 constexpr std::optional<std::pair<Block::Kind, std::size_t>> layout_of() {
   if constexpr (std::is_same_v<T, double>) return std::pair{Block::Kind::Double, std::size_t{1}};
@@ -324,14 +330,14 @@ void Visitor::visit_list(const Field& field, std::vector<T>& values, const Range
   end_list();
 }
 
-/// One of several types; the key `kind` says which. A variant may have another description of its own.
+/// Describes one of several types; the key `kind` names it. A variant type may replace this by its own description.
 template <class... T>
 void describe(Visitor& v, std::variant<T...>& value) {
   v.kind(Field{"kind", "Which it is."}, value);
   std::visit([&v](auto& own) { describe(v, own); }, value);
 }
 
-/// Named lists, in the order of their names.
+/// Describes a map: its names in order, then the value of each name.
 template <class V>
 void describe(Visitor& v, std::map<std::string, V>& values) {
   std::vector<std::string> names;
@@ -341,12 +347,12 @@ void describe(Visitor& v, std::map<std::string, V>& values) {
   for (const std::string& name : names) v(name, values[name]);
 }
 
-/// What a summary shows of a number that may not be known: nothing where it is not finite.
+/// Returns a number as a summary shows it if it may be unknown: nullopt where it is not finite.
 [[nodiscard]] inline std::optional<double> if_finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// A choice of one: the format of a file with its version, or the only thing of its kind. Anything else is refused.
+/// Describes a field with one possible value, such as the format of a file with its version. Other values are refused.
 inline void constant(Visitor& v, const Field& field, std::string_view only) {
   std::size_t place = 0;
   v.choice(field, place, Names(&only, 1));

@@ -8,19 +8,20 @@
 
 namespace incise {
 
-/// Every field of a described value as bytes, little-endian, in the order of the description: numbers and counts as 8
-/// bytes, flags and choices as 1 and 4, texts and lists behind their count, blocks as they lie in memory. The same
-/// value gives the same bytes; a number keeps all its bits.
+/// Returns every field of a described value as bytes, little-endian, in the order of the description: numbers and
+/// counts as 8 bytes, flags and choices as 1 and 4, texts and lists after their count, blocks as in memory. Equal
+/// values give equal bytes; a number keeps all its bits.
 template <class T>
 [[nodiscard]] std::string bytes_of(const T& value);
 
-/// The value that these bytes are. Memory grows with the bytes, not with what a count in them claims.
-/// @param name  stands for them in messages.
-/// @throws DataError naming byte and field: too few or too many bytes, a number out of its range, no such choice.
+/// Returns the value that the bytes encode. Memory grows with the number of bytes, whatever the counts in them claim.
+/// @param name  names the bytes in messages.
+/// @throws DataError naming byte and field: too few or too many bytes, a number out of its range (numbers in blocks are
+/// not checked), an unknown choice.
 template <class T>
 [[nodiscard]] T from_bytes(std::string_view bytes, const std::filesystem::path& name);
 
-/// Appends what it is shown.
+/// Appends each value that it visits.
 class ByteWriter : public Visitor {
  public:
   [[nodiscard]] bool sets() const override { return false; }
@@ -59,7 +60,7 @@ class ByteReader : public Visitor {
   void block(const Field& field, const Block& block) override;
   [[noreturn]] void refuse(const Field& field, const std::string& found, const std::string& expected) const override;
 
-  /// @throws DataError where bytes are left.
+  /// @throws DataError if bytes are left over.
   void finish() const;
 
  private:
@@ -67,7 +68,7 @@ class ByteReader : public Visitor {
   std::string_view bytes_;
   std::filesystem::path name_;
   std::size_t at_ = 0;
-  std::size_t last_ = 0;  ///< where the value read last begins
+  std::size_t last_ = 0;  ///< offset of the value that was read last
 };
 
 template <class T>

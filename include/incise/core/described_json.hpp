@@ -11,18 +11,18 @@
 
 namespace incise {
 
-/// A described value as JSON: an object with a key for each field in the order of the description, without its bulk
-/// fields and with its derived ones. What is absent is null; a choice is its name; a vector is a list of numbers, a
-/// matrix a list of rows.
+/// Returns a described value as JSON: an object with a key for each field in the order of the description, without its
+/// bulk fields and with its derived ones. An absent value is null (or has no key: Field::is_omitted); a choice is its
+/// name; a vector is a list of numbers, a matrix a list of rows.
 template <class T>
 [[nodiscard]] nlohmann::ordered_json to_json(const T& value);
 
-/// The value that this JSON describes. A field that may be absent is so where its key is missing or null; keys that the
-/// description does not have are passed over.
-/// @param file  stands for the JSON in messages.  @param pointer  of the value in its file.
-/// @param hint  how a sound file of this kind is made; may be empty.
-/// @throws DataError with file and JSON pointer: a missing key, a value of another kind, a number out of its range, no
-/// such choice.
+/// Returns the value that the JSON describes. A field that may be absent is absent where its key is missing or null.
+/// Unknown keys are ignored.
+/// @param file  names the JSON in messages.  @param pointer  JSON pointer to the value in its file.
+/// @param hint  how to make a valid file of this kind; may be empty.
+/// @throws DataError with file and JSON pointer: a missing key, a value of another kind, a number out of its range, an
+/// unknown choice, null for a field with Field::is_omitted.
 template <class T>
 [[nodiscard]] T from_json(const nlohmann::ordered_json& json, const std::filesystem::path& file,
                           std::string_view pointer = {}, std::string_view hint = {});
@@ -47,20 +47,20 @@ class JsonWriter : public Visitor {
   [[nodiscard]] nlohmann::ordered_json take() { return std::move(root_); }
 
  private:
-  /// Puts a value under the field's name, or at the end of the list that is open. @returns where it now is
+  /// Puts a value under the field's name, or at the end of the open list. @returns the value in its place
   nlohmann::ordered_json& put(const Field& field, nlohmann::ordered_json value);
 
   nlohmann::ordered_json root_;
-  std::vector<nlohmann::ordered_json*> open_;  ///< from the outermost to the innermost; empty: the root comes next
+  std::vector<nlohmann::ordered_json*> open_;  ///< from the outermost to the innermost; empty: the root is next
 };
 
 class JsonReader : public Visitor {
  public:
-  /// All of these have to live longer.
+  /// `json` and `file` must outlive the reader.
   JsonReader(const nlohmann::ordered_json& json, const std::filesystem::path& file, std::string_view pointer = {},
              std::string_view hint = {})
       : root_(&json), file_(file), pointer_(pointer), hint_(hint) {}
-  /// Refuses keys that no description has, naming the nearest one that it has.
+  /// Makes the reader refuse keys that the description does not have; the message suggests the nearest known key.
   JsonReader& refuse_unknown_keys() {
     is_strict_ = true;
     return *this;
@@ -86,14 +86,14 @@ class JsonReader : public Visitor {
   /// An object or list that is being read.
   struct Open {
     const nlohmann::ordered_json* json;
-    std::string key;                 ///< of this one in the one that holds it
-    std::size_t next = 0;            ///< item of a list
-    std::vector<std::string> known;  ///< keys that were asked for, where others are refused
+    std::string key;                 ///< of this object or list in its parent
+    std::size_t next = 0;            ///< next item of a list
+    std::vector<std::string> known;  ///< keys visited so far; empty unless unknown keys are refused
   };
   void note(const Field& field);
-  /// The value of a field: it is taken from the object or list that is open. Null where it is missing.
+  /// Returns the value of a field from the open object or list; null if it is missing.
   const nlohmann::ordered_json* find(const Field& field);
-  /// The same. @throws DataError where it is missing, or not of this kind.
+  /// Returns the same. @throws DataError if it is missing, or not of this kind.
   const nlohmann::ordered_json& take(const Field& field, bool (nlohmann::ordered_json::*is_kind)() const noexcept,
                                      std::string_view kind);
 
@@ -103,7 +103,7 @@ class JsonReader : public Visitor {
   std::string hint_;
   std::vector<Open> open_;
   bool is_strict_ = false;
-  const nlohmann::ordered_json* waiting_ = nullptr;  ///< found by `optional`, to be taken by what follows
+  const nlohmann::ordered_json* waiting_ = nullptr;  ///< found by `optional`; the next `find` returns it
 };
 
 template <class T>

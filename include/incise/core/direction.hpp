@@ -5,8 +5,8 @@
 
 namespace incise {
 
-/// Whether three numbers are a direction: finite, with a length that can be divided by and squared, [1e-6, 1e6]. Their
-/// length has no other meaning.
+/// Whether three numbers are a direction: finite, with a length in [1e-6, 1e6], which is safe to divide by and to
+/// square. The length has no other meaning.
 [[nodiscard]] inline bool is_direction(std::span<const double, 3> v) {
   constexpr double kShortest = 1e-6, kLongest = 1e6;
   const double length = std::hypot(v[0], v[1], v[2]);

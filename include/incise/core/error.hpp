@@ -16,21 +16,21 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A caller broke a precondition of a function: a mistake in code, told with what was expected and found.
+/// A caller broke a precondition of a function: a mistake in code. The message says what was expected and found.
 class InvalidArgument : public Error {
  public:
   explicit InvalidArgument(std::string text) : Error(text), text_(std::move(text)) {}
   InvalidArgument(std::string_view function, std::string text);
-  /// What was expected and found, without the name of the function: for the person whose file or case broke it.
+  /// Returns what was expected and found, without the function's name: for the person whose file or case is at fault.
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// The same as a sentence of its own: for the hint of another error.
+  /// Returns the same with its first letter capitalised: for the hint of another error.
   [[nodiscard]] std::string as_hint() const;
 
  private:
   std::string text_;
 };
 
-/// The command line or a case file asks for something that cannot be done (exit status 2 of the command).
+/// The command line or a case file requests something that cannot be done (exit status 2 of the command).
 /// The message reads "<where>: <field>: found <found>, expected <expected>. <hint>".
 class CaseError : public Error {
  public:
@@ -38,8 +38,8 @@ class CaseError : public Error {
   CaseError(std::string where, std::string field, std::string found, std::string expected, std::string hint = "");
   [[nodiscard]] const Problem& problem() const { return problem_; }
   [[nodiscard]] const std::string& field() const { return problem_.path; }
-  /// The same error with the case file named, for a thrower that did not know it: "case" gives way to `file`, a file that
-  /// is named already stays, any other place follows the file's name.
+  /// Returns the same error with the case file named, for throwers that did not know it. `file` replaces the place
+  /// "case" and precedes any other place; an error that names `file` already stays unchanged.
   [[nodiscard]] CaseError in_file(const std::string& file) const;
 
  private:
@@ -54,7 +54,7 @@ class DataError : public Error {
   DataError(const std::filesystem::path& path, const Problem& problem);
   DataError(const std::filesystem::path& path, std::string place, std::string found, std::string expected,
             std::string hint = "");
-  /// What the file holds breaks this precondition. @param place  in it; may be empty
+  /// The contents of the file break a precondition. @param place  in the file; may be empty
   DataError(const std::filesystem::path& path, const std::string& place, const InvalidArgument& broken);
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
@@ -62,7 +62,7 @@ class DataError : public Error {
   std::filesystem::path path_;
 };
 
-/// The person asked a computation to stop (Ctrl-C) and it had no partial result to return (exit status 130).
+/// The user stopped a computation (Ctrl-C) that had no partial result to return (exit status 130).
 class Cancelled : public Error {
  public:
   using Error::Error;
@@ -81,7 +81,7 @@ namespace core_detail {
     if (!(condition)) ::incise::core_detail::throw_invalid_argument(__func__, (message)); \
   } while (false)
 
-/// Checks an invariant of our own; stops the program in debug builds, costs nothing in release builds.
+/// Checks an internal invariant; stops the program in debug builds, costs nothing in release builds.
 #ifdef NDEBUG
 #define INCISE_ASSERT(condition) static_cast<void>(0)
 #else

@@ -10,22 +10,22 @@
 
 namespace incise {
 
-/// Notes what is wrong with settings beyond the ranges of their description: values that have to fit each other.
+/// Collects problems of settings that the ranges of their description cannot express: values that must fit each other.
 class Expect {
  public:
-  /// @param violations  that are added to; has to outlive this.
+  /// @param violations  list to which problems are added; must outlive this object.
   explicit Expect(std::vector<Problem>& violations) : violations_(violations) {}
 
-  /// A number that is not valid, or not finite.
+  /// Adds a problem if `is_valid` is false or `found` is not finite.
   void operator()(bool is_valid, std::string_view field, double found, std::string_view expected) const;
 
  private:
   std::vector<Problem>& violations_;
 };
 
-/// The numbers of a described value that its description does not allow: not finite, out of range, a direction of
-/// length 0. Each is named by its path from the value on: "region.close_margin_mm", "prony[0].time_s". Of a list of
-/// numbers only the first one is named.
+/// Returns the numbers of a described value that its description does not allow: not finite, out of range, or a vector
+/// that is not a direction (is_direction). Each is named by its path within the value, such as "region.close_margin_mm"
+/// or "prony[0].time_s"; of a list of numbers, only the first one is.
 template <class T>
 [[nodiscard]] std::vector<Problem> problems_of(const T& value);
 
@@ -50,9 +50,9 @@ class DescriptionCheck : public Visitor {
   struct Level {
     std::string path;
     bool is_list = false;
-    std::size_t next = 0;  ///< item of a list
+    std::size_t next = 0;  ///< next item of a list
   };
-  /// The path of the value that comes next; counts it where it is an item of a list.
+  /// Returns the path of the next value; in a list, advances to the item after it.
   std::string place_of(const Field& field);
 
   std::vector<Level> path_;

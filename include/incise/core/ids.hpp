@@ -6,7 +6,7 @@
 
 namespace incise {
 
-/// Index into one kind of array, as a type of its own: a VertexId cannot be passed where a TetId is meant.
+/// Index into one kind of array, as a distinct type: a VertexId cannot be passed where a TetId is meant.
 /// Holds 32 bits; -1 means "none".
 template <class Tag>
 struct Id {

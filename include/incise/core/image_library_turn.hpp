@@ -4,10 +4,10 @@
 
 namespace incise {
 
-/// The right to call the image libraries (ITK, GDCM) and to fork, for one thread at a time. ITK ends the threads of its
-/// pool whenever the process is forked, as it is for every file that is decoded in a process of its own, whatever they
-/// are doing; and standard error, which is closed while these libraries run, belongs to the whole process.
-/// Keep it around such calls only. Not for nested use, and not in the forked process, where nobody would give it back.
+/// A process-wide lock that lets one thread at a time call the image libraries (ITK, GDCM) or fork. At each fork, ITK
+/// ends the threads of its pool, whatever they are doing, and incise forks to decode each file in a separate process.
+/// Standard error, which is closed while these libraries run, also belongs to the whole process.
+/// Hold the lock only during such calls. Not for nested use, and not in the forked process, where it is never released.
 class [[nodiscard]] ImageLibraryTurn {
  public:
   ImageLibraryTurn();

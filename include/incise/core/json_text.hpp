@@ -9,17 +9,18 @@
 
 namespace incise {
 
-/// What is read at most of one JSON file.
+/// Largest JSON file that is read, bytes.
 inline constexpr std::uint64_t kLargestJsonBytes = 256ULL << 20;
 
-/// JSON text, indented by two, ending in a line end. Other writers turn NaN into `null` without a word; this one
-/// refuses.
+/// Returns a value as JSON text, indented by two spaces, with a newline at the end. Other writers silently turn NaN
+/// into `null`; this one throws.
 /// @throws InvalidArgument with the JSON pointer of the first number that is not finite.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& value);
 
-/// Parses JSON, key order kept. @param name stands for the file in messages.
-/// @throws DataError with line and column where the text is not JSON; for a key given twice in one object, values
-/// nested more than 64 deep, an object of more than 5000 keys, more than kLargestJsonBytes.
+/// Parses JSON and keeps the order of its keys. @param name  names the file in messages.
+/// @throws DataError with line and column where the text is not JSON; also for a key that occurs twice in one object,
+/// values nested more than 64 deep, an object of more than 5000 keys, a number beyond the range of a double, and a text
+/// above kLargestJsonBytes.
 [[nodiscard]] nlohmann::ordered_json parse_json(std::string_view text, const std::filesystem::path& name);
 
 }  // namespace incise

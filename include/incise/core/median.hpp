@@ -6,7 +6,8 @@
 
 namespace incise {
 
-/// The middle one of the values in order, the upper of two. Reorders them. @pre at least one value, none NaN.
+/// Returns the median of the values; of an even number, the upper of the two middle ones. Reorders the values.
+/// @pre at least one value, none NaN.
 template <class Number>
 [[nodiscard]] Number median(std::vector<Number>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -6,9 +6,10 @@ namespace incise {
 
 enum class Severity { Detail, Notice, Warning };
 
-/// What a long computation is given instead of a console: it reports messages and progress here and asks
-/// whether it should stop. The default discards everything and never stops. The library itself never prints.
-/// Calls come from the thread that called the computation; only `is_cancelled` may come from several threads.
+/// Receives messages and progress of a long computation, and says whether it should stop. The default discards
+/// everything and never stops. The library itself never prints.
+/// A computation calls its monitor only from the thread that called the computation, except `is_cancelled`, which any
+/// of its threads may call.
 class Monitor {
  public:
   virtual ~Monitor() = default;
@@ -19,8 +20,8 @@ class Monitor {
   [[nodiscard]] virtual bool is_cancelled() const { return false; }
 };
 
-/// For a computation inside another one: stops when the outer monitor asks to, and keeps its messages and its progress
-/// to itself. The outer monitor has to outlive it.
+/// Monitor of a computation inside another one: stops when the outer monitor asks to, and discards messages and
+/// progress. The outer monitor must outlive this object.
 class StopOnly : public Monitor {
  public:
   explicit StopOnly(const Monitor& outer) : outer_(outer) {}

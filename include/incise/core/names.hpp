@@ -13,8 +13,8 @@ namespace incise {
 
 using Names = std::span<const std::string_view>;
 
-/// An enum whose values have names: beside it stands a function `names_of` that gives them in the order of the values,
-/// which start at 0.
+/// An enum whose values have names: a function `names_of` beside it returns them in the order of the values, which
+/// start at 0.
 ///
 ///     enum class Shape { Round, Square };
 ///     inline constexpr std::array<std::string_view, 2> kShapeNames{"round", "square"};
@@ -24,7 +24,7 @@ concept Named = std::is_enum_v<E> && requires(E value) {
   { names_of(value) } -> std::convertible_to<Names>;
 };
 
-/// The name of a value, or "unknown" for a number that is not a value of the enum.
+/// Returns the name of a value, or "unknown" for a number that is not a value of the enum.
 template <Named E>
 [[nodiscard]] constexpr std::string_view to_string(E value) {
   const Names names = names_of(value);
@@ -32,7 +32,7 @@ template <Named E>
   return place < names.size() ? names[place] : "unknown";
 }
 
-/// The value of that name; nothing for any other.
+/// Returns the value with this name; nullopt if there is none.
 template <Named E>
 [[nodiscard]] constexpr std::optional<E> value_of(std::string_view name) {
   const Names names = names_of(E{});
@@ -41,7 +41,7 @@ template <Named E>
   return std::nullopt;
 }
 
-/// All values, in their order.
+/// Returns all values, in their order.
 template <Named E>
 [[nodiscard]] constexpr auto values_of() {
   std::array<E, Names(names_of(E{})).size()> values{};
@@ -49,7 +49,7 @@ template <Named E>
   return values;
 }
 
-/// The names as a sentence lists them: "ok, caution or refused".
+/// Returns the names as a list in a sentence: "ok, caution or refused".
 [[nodiscard]] std::string choices(Names names);
 
 }  // namespace incise

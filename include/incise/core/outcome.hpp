@@ -13,14 +13,14 @@ enum class Outcome {
   ElementInverted,  ///< An element turned inside out and could not be recovered.
   Cancelled,        ///< Stopped on request; a checkpoint holds the state.
 };
-/// Used in files.
+/// Names in files.
 inline constexpr std::array<std::string_view, 6> kOutcomeNames{"success",       "positive_margin",  "open_loop",
                                                                "not_converged", "element_inverted", "cancelled"};
 [[nodiscard]] constexpr Names names_of(Outcome) {
   return kOutcomeNames;
 }
 
-/// What an incision that ended so did, for a person: the end of a sentence that begins with "the cut".
+/// Returns the outcome in words for a person: the rest of a sentence that begins with "the cut".
 [[nodiscard]] constexpr std::string_view in_words(Outcome outcome) {
   constexpr std::array<std::string_view, 6> kWords{
       "was simulated to its end",

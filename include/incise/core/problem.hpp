@@ -6,19 +6,20 @@
 
 namespace incise {
 
-/// What is wrong with a value: a complaint as data, of which a sentence is made where it is shown.
+/// A problem with a value, as data; it becomes a sentence where it is shown.
 struct Problem {
-  std::string path;  ///< of the field: prony[0].time_s; empty: the value as a whole
+  std::string path;  ///< of the field, such as prony[0].time_s; empty: the value as a whole
   std::string found;
   std::string expected;
   std::string hint = {};  ///< what to do about it; may be empty
 };
 
-/// "depth_mm: found -1, expected a number above 0. Give it in mm."
+/// Returns the problem as text: "depth_mm: found -1, expected a number above 0. Give it in mm."
 [[nodiscard]] std::string sentence(const Problem& problem);
 [[nodiscard]] std::vector<std::string> sentences(std::span<const Problem> problems);
 
-/// @throws InvalidArgument with all of them in one line, from the function that asks.
+/// Checks that there are no problems. @param function  named in the message; by default the caller.
+/// @throws InvalidArgument with all problems in one line.
 void require_none(std::span<const Problem> problems, const char* function = __builtin_FUNCTION());
 
 }  // namespace incise

@@ -6,7 +6,7 @@
 namespace incise {
 
 /// Seeded random numbers that are the same on every platform and standard library: the engine is
-/// std::mt19937_64, whose sequence the standard fixes; the distributions, which it does not fix, are ours.
+/// std::mt19937_64, whose sequence the standard fixes; incise implements the distributions, which it does not fix.
 /// Pass it by reference; there is no hidden engine anywhere.
 class Random {
  public:
@@ -18,7 +18,7 @@ class Random {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Normal with mean 0 and standard deviation 1 (polar method of Marsaglia).
   double normal();
-  /// Uniform integer in [0, count). @pre count > 0.
+  /// Uniform integer in [0, count). @throws InvalidArgument if count is 0.
   std::uint64_t below(std::uint64_t count);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace incise {
 
-/// SHA-256 (FIPS 180-4) of bytes that come piece by piece. @throws Error when the library that computes it fails.
+/// SHA-256 (FIPS 180-4) of bytes that are added piece by piece. @throws Error if OpenSSL fails.
 class Sha256 {
  public:
   Sha256();
@@ -15,7 +15,7 @@ class Sha256 {
   Sha256(Sha256&&) noexcept;
   Sha256& operator=(Sha256&&) noexcept;
   void add(const void* data, std::size_t size);
-  /// Of all that was added, as 64 lower-case hex digits. To be asked for once.
+  /// Returns the hash of all bytes added, as 64 lower-case hex digits. Call it once, after the last `add`.
   [[nodiscard]] std::string hex_digits();
 
  private:
@@ -23,7 +23,7 @@ class Sha256 {
   std::unique_ptr<State> state_;
 };
 
-/// SHA-256 of a text as 64 lower-case hex digits.
+/// Returns the SHA-256 of a text as 64 lower-case hex digits.
 [[nodiscard]] std::string sha256_of_text(std::string_view text);
 
 }  // namespace incise

@@ -4,14 +4,15 @@
 
 namespace incise {
 
-/// Tells from how far a computation is how long it still takes. What it tells counts down with the clock and follows a changed pace over a
-/// tenth of the whole time, so that it does not jump. A computation may begin anywhere: one that is resumed at 60 % is no faster for that.
+/// Estimates the remaining time of a computation from its progress. The estimate counts down with the clock and follows
+/// a changed pace over a tenth of the whole time, so it does not jump. A computation may start at any fraction: one
+/// that resumes at 60 % does not seem faster.
 class TimeLeft {
  public:
   /// @param elapsed_s  on any clock, never less than in the call before.
   /// @param fraction   done so far, in [0, 1], never less than in the call before.
   void note(double elapsed_s, double fraction);
-  /// s, at the time of the last note; nothing until a fiftieth of all is done since the first.
+  /// Returns the remaining time at the last note, s; nullopt until 2 % of the whole was done since the first note.
   [[nodiscard]] std::optional<double> seconds() const { return left_s_; }
 
  private:

@@ -2,7 +2,8 @@
 
 #include <numbers>
 
-/// The one consistent set inside incise: mm, s, kg, mN, kPa (= mN/mm²), µJ (= mN mm). Conversions live here only.
+/// The one consistent set of units inside incise: mm, s, kg, mN, kPa (= mN/mm²), µJ (= mN mm).
+/// All conversions are here.
 namespace incise::units {
 
 inline constexpr double kMmPerM = 1000.0;

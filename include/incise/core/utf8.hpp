@@ -6,11 +6,11 @@
 
 namespace incise {
 
-/// Offset in bytes of the first byte that is not part of well-formed UTF-8 (no overlong forms, no surrogates, at most U+10FFFF); nothing where
-/// all of it is. Names and titles are written into JSON files, which hold nothing else.
+/// Returns the offset of the first byte that is not part of well-formed UTF-8 (no overlong forms, no surrogates, at
+/// most U+10FFFF); nullopt if there is none. Names and titles are written to JSON files, which must be UTF-8.
 [[nodiscard]] std::optional<std::size_t> first_not_utf8(std::string_view text);
 
-/// The beginning of a text: at most so many bytes, and no character cut in two.
+/// Returns the beginning of a text: at most `bytes` bytes, with no character cut in two.
 [[nodiscard]] std::string_view utf8_prefix(std::string_view text, std::size_t bytes);
 
 }  // namespace incise

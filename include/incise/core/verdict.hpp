@@ -14,8 +14,8 @@ namespace incise {
 
 /// The judgement of a cut, a run or a measurement. Ordered: the greater, the worse.
 enum class VerdictStatus {
-  Ok,       ///< nothing is known against it
-  Caution,  ///< something is; a robot program is written only if a person accepts each reason by its name
+  Ok,       ///< no objection is known
+  Caution,  ///< a robot program is written only if a person accepts each reason by its id
   Refused,  ///< it must not be carried out; no robot program is written
 };
 inline constexpr std::array<std::string_view, 3> kVerdictStatusNames{"ok", "caution", "refused"};
@@ -28,16 +28,16 @@ struct VerdictRule {
   std::string_view id;             ///< as users write it: `--accept depth`
   VerdictStatus severity;          ///< Caution or Refused
   std::optional<double> limit;     ///< in `unit`; absent: a plain yes or no, or a limit that the case sets
-  std::string_view relation;       ///< what a good value does to the limit: "<=", ">=", "<", ">"; empty for a yes or no
+  std::string_view relation;       ///< of a good value to the limit: "<=", ">=", "<", ">"; empty: nothing is compared
   std::string_view unit;           ///< empty: a share or a count
   std::string_view meaning;        ///< one sentence
 };
 
-/// The table of limits, in the order in which reasons of one severity are listed. docs/models/verdict.md shows the same table; a test
-/// compares the two.
+/// Returns the table of limits, in the order in which reasons of equal severity are listed. docs/models/verdict.md
+/// shows the same table; a test compares the two.
 [[nodiscard]] std::span<const VerdictRule> verdict_rules();
 
-/// @throws InvalidArgument for an id that the table does not have.
+/// Returns the rule with this id. @throws InvalidArgument for an id that the table does not have.
 [[nodiscard]] const VerdictRule& verdict_rule(std::string_view id);
 
 /// Where along a path or in the tissue something was found.
@@ -56,8 +56,8 @@ inline void describe(Visitor& v, VerdictPlace& p) {
 struct VerdictReason {
   std::string id;                                  ///< of its rule
   VerdictStatus severity = VerdictStatus::Caution;
-  std::optional<double> value;                     ///< found, in `unit`
-  std::optional<double> limit;                     ///< that it was compared with
+  std::optional<double> value;                     ///< that was found, in `unit`
+  std::optional<double> limit;                     ///< with which the value was compared
   std::string unit;
   std::optional<VerdictPlace> at;
   std::string message;                             ///< one sentence for a person, with the numbers in it
@@ -69,15 +69,18 @@ class Verdict {
  public:
   Verdict() = default;
 
-  /// Adds a reason of the rule's severity, unit and limit (`limit`, where given, in its place). @throws InvalidArgument for an unknown id.
+  /// Adds a reason with the severity, unit and limit of the rule `id`. @param limit  replaces the rule's limit, if
+  /// given.
+  /// @throws InvalidArgument for an unknown id.
   void add(std::string_view id, std::optional<double> value, std::string message, std::optional<VerdictPlace> at = {},
            std::optional<double> limit = {});
-  /// Adds a reason as it is, such as one read from a file. One that is there already (same id and message) is not added again.
+  /// Adds a complete reason, such as one read from a file, unless one with the same id and message is there already. A
+  /// value or limit that is not finite becomes absent.
   void add(VerdictReason reason);
   /// Adds every reason of another verdict.
   void add(const Verdict& other);
 
-  [[nodiscard]] VerdictStatus status() const;  ///< that of the worst reason; Ok without one
+  [[nodiscard]] VerdictStatus status() const;  ///< severity of the worst reason; Ok without one
   [[nodiscard]] const std::vector<VerdictReason>& reasons() const { return reasons_; }
   [[nodiscard]] bool has(std::string_view id) const;
   friend void describe(Visitor& v, Verdict& verdict);
@@ -86,11 +89,11 @@ class Verdict {
   std::vector<VerdictReason> reasons_;
 };
 
-/// Refuses, where it is read, a reason that the table does not have, a severity that is not its rule's, and a status
-/// that is not that of the worst reason.
+/// While reading, refuses an id that the table does not have, a severity other than its rule's, a status other than the
+/// worst reason's, and more than 1000 reasons.
 void describe(Visitor& v, Verdict& verdict);
 
-/// What stands between a verdict and a robot program, after a person has accepted some cautions.
+/// Whether a verdict allows a robot program, after a person has accepted some cautions.
 struct VerdictGate {
   bool is_open = false;                 ///< the program may be written
   std::vector<std::string> accepted;    ///< ids of the cautions that were accepted, each once, in the verdict's order
@@ -104,12 +107,13 @@ inline void describe(Visitor& v, VerdictGate& g) {
   v("refused", g.refused, "Ids of the reasons that nobody can accept.");
 }
 
+/// Returns whether a verdict allows a robot program.
 /// @param accepted_ids  as given with `--accept`; ids of reasons that the verdict does not have are ignored.
 [[nodiscard]] VerdictGate gate_of(const Verdict& verdict, std::span<const std::string> accepted_ids);
 
-/// What remains of a verdict whose path is no longer the one that was cut: its refusals, and a caution `not_simulated`.
-/// So a path that was refused does not become one that a person may accept.
-/// @param why  the path counts as not simulated, one sentence.
+/// Returns the verdict on a path that is no longer the one that was cut: the refusals of the old verdict and a caution
+/// `not_simulated`. So nobody can accept a path that was refused.
+/// @param why  one sentence: why the path counts as not simulated.
 [[nodiscard]] Verdict refusals_of(const Verdict& verdict, std::string why);
 
 }  // namespace incise

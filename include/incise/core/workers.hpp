@@ -6,13 +6,14 @@
 
 namespace incise {
 
-/// A fixed set of threads for loops over arrays. Work is split into chunks whose borders depend on the count and
-/// the chunk size only, never on the number of threads: a reduction that adds chunk results in chunk order gives the same bits with 1
-/// and with 16 threads. Waiting threads sleep; they do not spin. Not for nested use.
+/// A fixed set of threads for loops over arrays. Work is split into chunks whose borders depend only on the count and
+/// the chunk size, never on the number of threads: a reduction that adds chunk results in chunk order gives the same
+/// bits with 1 and with 16 threads. Waiting threads sleep; they do not spin. Not for nested use.
 class Workers {
  public:
-  /// @param threads  >= 1; 0 means every hardware thread.
-  /// @throws Error saying how many threads could be started, where the system gives no more.
+  /// @param threads  >= 1, the caller's thread included; 0: every hardware thread.
+  /// @throws Error saying how many threads could be started, if the system refuses more; InvalidArgument for a negative
+  /// number.
   explicit Workers(int threads = 1);
   ~Workers();
   Workers(const Workers&) = delete;
@@ -20,8 +21,9 @@ class Workers {
 
   [[nodiscard]] int thread_count() const;
 
-  /// Calls body(chunk, begin, end) once for each chunk of at most `chunk_size` consecutive items of [0, count);
-  /// returns when all are done. An exception from a body is rethrown here, the one of the lowest chunk.
+  /// Calls body(chunk, begin, end) once for each chunk of at most `chunk_size` consecutive items of [0, count) and
+  /// returns when all are done. Rethrows an exception of a body; if there are several, the one of the lowest chunk.
+  /// @throws InvalidArgument for a chunk size of 0, or 2^31 chunks or more.
   void for_chunks(std::size_t count, std::size_t chunk_size,
                   const std::function<void(std::size_t chunk, std::size_t begin, std::size_t end)>& body);
 

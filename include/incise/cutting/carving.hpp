@@ -17,10 +17,12 @@
 
 namespace incise {
 
-/// The hold that the tool has on one tet between first contact and removal.
+/// The hold of the tool on one tet, from first contact until the tet is removed or out of reach.
 struct Bond {
   TetId tet;
-  Vec3 offset_mm = Vec3::Zero();  ///< of the tet's centroid from the tool's tip when first touched, less what it has slipped since
+  /// From the tool's tip to the holding place: the tet's centroid at first contact, shifted by each slip since, mm. It
+  /// turns with the tool.
+  Vec3 offset_mm = Vec3::Zero();
 };
 inline void describe(Visitor& v, Bond& b) {
   v("tet", b.tet, "The tet that is held.");
@@ -28,18 +30,19 @@ inline void describe(Visitor& v, Bond& b) {
     "Of its centroid from the tool's tip when first touched, less what it has slipped since.");
 }
 
-/// A simulation of cutting as a value: tissue, doses, bonds and what was removed so far.
+/// A simulated cut as a value: tissue, doses, bonds, and the record of removed tets.
 struct CutState {
   TissueState tissue;
-  std::vector<double> dose;          ///< per tet: how much of what removes it is done, gone at 1; kept when contact is lost
-  std::vector<double> tear_dose;     ///< per tet: the part of `dose` that is the tool's work
-  std::vector<Bond> bonds;           ///< ascending tet
-  CutPoints points;                  ///< of a cut by points
-  MeshSplits splits;                 ///< of the model's mesh, by a cut by points: all lists here are of the split mesh
-  int split_step = 0;                ///< when it was looked at last what has come apart
+  std::vector<double> dose;       ///< per tet: progress towards removal, >= 0; removed at 1. Kept when contact is lost,
+                                  ///< unless ContactCount::Reset applies
+  std::vector<double> tear_dose;  ///< per tet: the part of `dose` that comes from the tool's work
+  std::vector<Bond> bonds;        ///< ascending tet
+  CutPoints points;               ///< of a cut by points; otherwise empty
+  MeshSplits splits;              ///< of the whole mesh, by a cut by points; all lists here are of the split mesh
+  int split_step = 0;             ///< step of the last search for tets that have come apart
   ToolPose tool;
-  double time_s = 0.0;
-  int step = 0;
+  double time_s = 0.0;  ///< since the tool began to plunge
+  int step = 0;         ///< number of steps done
   CutRecord record;
 };
 inline void describe(Visitor& v, CutState& s) {
@@ -55,40 +58,45 @@ inline void describe(Visitor& v, CutState& s) {
   v("step", s.step, "Done so far.", kNotNegative);
   v("record", s.record, "Every tet that was removed.");
 }
+/// Returns the state before the first step: no doses, no bonds, nothing removed.
 [[nodiscard]] CutState begin_cut(const TissueModel& model, TissueState stretched, const ToolPose& tool);
 
-/// Whether the next step from here makes everything anew that a workspace carries from step to step (every 20th step does). From such a
-/// state a new workspace, in another process too, gives the same bits as the one that led there: the states that can be put by.
+/// Returns whether the next step rebuilds everything that a workspace carries from step to step (every 20th step does).
+/// Save a cut only in such a state: from it a new workspace, even in another process, gives the same bits as the
+/// workspace that led to it.
 [[nodiscard]] bool is_renewal_step(const CutState& state);
 
-/// What one step did.
+/// Report on one step.
 struct CutStepReport {
   PcgReport solve;
   std::size_t tets_in_contact = 0;
-  std::size_t removed = 0;
-  std::size_t loose_removed = 0;
-  std::size_t held_back_vertices = 0;         ///< vertices whose step was cut to max_step_mm
-  std::size_t slipped = 0;                    ///< bonds, or points of a cut by points, that slipped
+  std::size_t removed = 0;             ///< tets whose dose became full
+  std::size_t loose_removed = 0;       ///< tets of loose fragments
+  std::size_t held_back_vertices = 0;  ///< vertices whose motion was shortened to CutSettings::max_step_mm
+  std::size_t slipped = 0;             ///< bonds, or points of a cut by points, that slipped
   Vec3 tool_force_mn = Vec3::Zero();          ///< of the tissue on the tool
   Vec3 tool_torque_mn_mm = Vec3::Zero();      ///< of the tissue on the tool, about its tip
-  double max_step_mm = 0.0;  ///< farthest that a vertex moves, with the tool in at most CutSettings::max_step_mm; on
-                             ///< the way to rest, where nothing lowers the energy, how far the step would move it
-  bool is_finite = true;                      ///< false: positions were left as before the step
+  double max_step_mm = 0.0;  ///< greatest motion of a vertex, at most CutSettings::max_step_mm with the tool in. With
+                             ///< the tool out, if no part of the step lowers the energy: the motion that was rejected
+  bool is_finite = true;                      ///< false: the step gave non-finite numbers, and positions are unchanged
 };
 
-/// Memory, stiffness and factorisations that steps reuse; never affects a result beyond the solver's tolerance. A cut that goes on from
-/// its state before a renewal step (is_renewal_step), in a workspace made with the same positions and precision, gives the same bits.
+/// Memory, stiffness and factorisations that steps reuse. Affects results only within the solver's tolerance. A cut
+/// that continues from a state for which is_renewal_step() holds gives the same bits in any workspace made with the
+/// same positions and precision.
 class CutWorkspace {
  public:
-  /// @param precision  of the linear solves; single suffices for tolerances of 1e-2 and more.
+  /// @param positions  of the model's vertices, N x 3, mm: the stretched tissue.
+  /// @param precision  of the linear solves; single precision suffices for tolerances of 1e-2 or more.
   explicit CutWorkspace(const TissueModel& model, std::span<const Vec3> positions, Precision precision = Precision::Single);
   ~CutWorkspace();
   CutWorkspace(CutWorkspace&&) noexcept;
   struct Data;
   [[nodiscard]] Data& data() { return *data_; }
 
-  /// The model on the split mesh of a cut: everything is made anew where the splits are others than those of the last
-  /// call. Valid until then. @param whole  the model that the workspace was made for.
+  /// Returns the model on the split mesh of a cut; `whole` itself without splits. Rebuilds the workspace if the splits
+  /// differ from those of the last call. The reference is valid until the next rebuild.
+  /// @param whole  the model that the workspace was made for.
   const TissueModel& model_for(const TissueModel& whole, const MeshSplits& splits);
 
  private:
@@ -98,15 +106,20 @@ class CutWorkspace {
   Precision precision_;
 };
 
-/// Removes live tets as a full dose would, with fragments that then hang by no face; the record names them as cut in the state's step.
-/// @returns how many went. @throws InvalidArgument for a tet that the mesh does not have.
+/// Removes live tets as if their dose were full, and the loose fragments that result. The record gives them the step
+/// number of the state. Ignores tets that are not live.
+/// @returns the number of tets removed, fragments included.
+/// @throws InvalidArgument for a tet that is not in the mesh.
 std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace, std::span<const TetId> tets);
 
-/// One quasi-static step of implicit Euler with one linear solve: the tool moves from state.tool to `next`, bonded
-/// tissue follows or slips, the dose of touched tets is integrated inside the step, and tets whose dose is full go,
-/// with fragments that then hang by no face. Without `next` the tool is out: bonds are dropped and the tissue takes a
-/// step of Newton's method towards rest. A cut by points splits the mesh on its way: see CutState::splits. @param whole
-/// the model of the mesh before that.
+/// Advances the cut by one quasi-static step (implicit Euler, one linear solve). The tool moves from state.tool to
+/// `next`, held tissue follows or slips, and the dose of touched tets grows. Tets whose dose is full are removed, with
+/// the loose fragments that result. A cut by points also splits the mesh: see CutState::splits.
+/// @param whole   the model of the whole mesh.
+/// @param next    pose of the tool at the end of the step; absent: the tool is out, its bonds are dropped, and the
+///                tissue takes one step of Newton's method towards rest.
+/// @param step_s  time in which the tool moves, s, finite and > 0.
+/// @throws InvalidArgument for a step that is not above 0.
 CutStepReport advance(const TissueModel& whole, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers);
 

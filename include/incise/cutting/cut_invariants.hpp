@@ -7,23 +7,24 @@
 
 namespace incise {
 
-/// What is wrong with the points and splits of a state that came from elsewhere; empty: they are of this model.
+/// Checks whether the points, the splits and the steps of the record of a loaded state fit a model.
+/// @returns the first problem, as a sentence; empty: there is none.
 [[nodiscard]] std::string find_problem(const TissueModel& whole, const CutState& state);
 
-/// What has to hold of a cut at every step, whatever the tool did:
+/// Checks the invariants of a cut, which hold after every step:
 ///
-/// - balance: rest volume and mass of the live tets and of those in the record add up to the uncut body's, to rounding
-/// - record: every tet that is not live is in it once, with its rest volume, and no live one is; steps ascend, and none is
-///   ahead of the state, nor is a time; within a step: what was touched long enough, then loose fragments, each ascending
-/// - positions: of vertices with a live tet, mm: finite
-/// - dose: finite; what tearing contributed is between 0 and the whole
+/// - balance: the rest volumes and masses of live and recorded tets add up to those of the uncut body, to rounding
+/// - record: holds each tet that is not live once, with its rest volume, and no live tet; steps ascend; no step or time
+///   is later than the state's; within a step: tets whose dose was full, then loose fragments, each in ascending order
+/// - positions: finite at all vertices of live tets
+/// - dose: finite; the part from tearing lies between 0 and the dose
 /// - bonds: on live tets only, ascending, with finite offsets
-/// - points: as many of everything as their tets have; doses finite and not negative, at least 1 where parted and nowhere
-///   else; what is left of a tet's stiffness in (0, 1]
+/// - points: every list has one item per point; doses are finite and not negative, and at least 1 exactly where the
+///   point is parted; the share of its stiffness that a tet retains lies in (0, 1]
 ///
-/// @returns every kind of violation, one sentence each with the first offender; empty: all hold.
+/// @returns one sentence per kind of violation, which names the first case; empty: all invariants hold.
 /// O(vertices + tets + removals + bonds + points).
-/// @throws InvalidArgument when the state's lists do not fit the model's mesh.
+/// @throws InvalidArgument if the state's lists do not fit the model's mesh.
 [[nodiscard]] std::vector<std::string> cut_invariants(const TissueModel& whole, const CutState& state);
 
 }  // namespace incise

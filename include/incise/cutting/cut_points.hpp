@@ -9,16 +9,16 @@
 
 namespace incise {
 
-/// What a cut by points (CutRule::Lattice) has done to the points of its lattice, tet by tet: first all points of the
-/// tet that the tool came near first. Which points a tet has follows from the whole mesh alone (PointLattice).
+/// State of the points of a cut by points (CutRule::Lattice), ordered by tet: first all points of the first tet in
+/// `tets`, and so on. The whole mesh alone determines which points a tet has (PointLattice).
 struct CutPoints {
-  std::vector<TetId> tets;                ///< of the whole mesh, that the tool came near, in that order
-  std::vector<TetId> tet_of;              ///< per point: that of the split mesh with which it moves
-  std::vector<double> dose;               ///< per point: parted from 1 on; goes on growing
-  std::vector<std::uint8_t> is_held;      ///< per point: within the tool's reach
-  std::vector<Vec3> offset_mm;            ///< of a held point from the tip when it came within reach, less its slip
-  std::vector<std::int32_t> parted_step;  ///< in which a point parted; -1: it did not
-  std::vector<Vec3> parted_mm;            ///< where it was then
+  std::vector<TetId> tets;                ///< tets of the whole mesh near which the tool has come, in that order
+  std::vector<TetId> tet_of;              ///< per point: the tet of the split mesh with which it moves
+  std::vector<double> dose;               ///< per point, >= 0; the point is parted at 1, and its dose still grows
+  std::vector<std::uint8_t> is_held;      ///< per point: 1 within the tool's reach
+  std::vector<Vec3> offset_mm;            ///< per held point: from the tip to its holding place, mm
+  std::vector<std::int32_t> parted_step;  ///< per point: the step in which it parted; -1: not parted
+  std::vector<Vec3> parted_mm;            ///< per parted point: its current position at that step, mm
 };
 inline void describe(Visitor& v, CutPoints& p) {
   v("tets", p.tets, "That the tool came near, in that order.");

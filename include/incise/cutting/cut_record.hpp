@@ -9,23 +9,24 @@
 
 namespace incise {
 
-/// Why a tet was removed. Each stands in files by its number.
+/// Cause of a tet's removal. Files store its number.
 enum class RemovalCause {
   Dwell,          ///< its dose was full, at least half of it from contact
   LooseFragment,  ///< no longer joined to the body by a face
-  Tear,           ///< its dose was full, more than half of it from the work that the tool did on it
+  Tear,           ///< its dose was full, more than half of it from the tool's work
 };
 inline constexpr std::array<std::string_view, 3> kRemovalCauseNames{"dwell", "loose_fragment", "tear"};
 [[nodiscard]] constexpr Names names_of(RemovalCause) {
   return kRemovalCauseNames;
 }
 
+/// The removal of one tet.
 struct Removal {
-  TetId tet;  ///< of the split mesh, after a cut by points
-  int step = 0;
+  TetId tet;     ///< in a cut by points: of the split mesh
+  int step = 0;  ///< number of steps done at the removal, that step included
   double time_s = 0.0;             ///< since the tool began to plunge
   RemovalCause cause = RemovalCause::Dwell;
-  Vec3 centroid_mm = Vec3::Zero(); ///< where it was when it went, current configuration
+  Vec3 centroid_mm = Vec3::Zero(); ///< at its removal, current configuration
   double rest_volume_mm3 = 0.0;
 };
 inline void describe(Visitor& v, Removal& r) {
@@ -37,10 +38,11 @@ inline void describe(Visitor& v, Removal& r) {
   v("rest_volume_mm3", r.rest_volume_mm3, "Of the tet at rest.");
 }
 
-/// Every tet that went, in order: the whole memory of a cut. Within a step: what was touched long enough, then loose fragments, each by
-/// ascending tet.
+/// All removed tets, in order of removal. Within a step: tets whose dose was full, then loose fragments, each in
+/// ascending order.
 struct CutRecord {
   std::vector<Removal> removals;
+  /// Returns the sum of the removed tets' rest volumes, mm³.
   [[nodiscard]] double removed_volume_mm3() const {
     double sum = 0.0;
     for (const Removal& removal : removals) sum += removal.rest_volume_mm3;

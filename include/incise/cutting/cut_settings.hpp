@@ -11,81 +11,91 @@
 
 namespace incise {
 
-/// What carries a cut.
+/// The rule by which tissue is cut.
 enum class CutRule {
-  Tets,     ///< whole tets have a dose, are held by the tool, and go
-  Lattice,  ///< so have points of a fixed lattice; a tet has the stiffness of what is left of it
-  Paper,    ///< whole tets as the paper removes them (II-C.2): from the surface inwards, after a count of steps
+  Tets,     ///< Each tet has a dose; the tool holds and removes whole tets.
+  Lattice,  ///< Each point of a fixed lattice has a dose; the tool holds and parts points, and tets lose stiffness.
+  Paper,    ///< Whole tets by the paper's rule (II-C.2): from the surface inwards, after a count of steps in contact.
 };
 inline constexpr std::array<std::string_view, 3> kCutRuleNames{"tets", "lattice", "paper"};
 [[nodiscard]] constexpr Names names_of(CutRule) {
   return kCutRuleNames;
 }
 
-/// What becomes of a tet's count of steps when contact is lost. The paper does not say.
+/// Treatment of a tet's count of steps when contact is lost; the paper does not specify it.
 enum class ContactCount {
-  Keep,   ///< it goes on from there when the tet is touched again
-  Reset,  ///< it begins anew
+  Keep,   ///< The count resumes when the tet is touched again.
+  Reset,  ///< The count restarts from 0.
 };
 inline constexpr std::array<std::string_view, 2> kContactCountNames{"keep", "reset"};
 [[nodiscard]] constexpr Names names_of(ContactCount) {
   return kContactCountNames;
 }
 
-/// How the simulated tool cuts. Speed and dullness are the two numbers that calibration finds (paper II-C.4); the
-/// defaults are the paper's chosen pair, the rest is described in docs/models/cutting.md.
+/// Settings of the simulated cut. Calibration finds the speed and the dullness (paper II-C.4); their defaults are the
+/// paper's chosen pair. docs/models/cutting.md describes the other settings.
 struct CutSettings {
-  double speed_mm_s = 13.0;           ///< of the simulated tool, > 0
-  double dullness = 9.0;              ///< contact needed before a tet goes, counted in reference steps, > 0
-  double reference_step_s = 0.02;     ///< the time that one unit of dullness stands for, > 0
-  double power_w = 35.0;              ///< of the electrode, > 0; a study takes that of its plan
-  double reference_power_w = 35.0;    ///< power at which dullness is the required contact, > 0; the paper's (II-B.3)
-  double reference_real_speed_mm_s = 7.0;  ///< speed of the real tool at which it is, > 0; the paper's (II-B.1)
-  double reference_depth_mm = 5.0;         ///< and depth of its tip, > 0; the paper's
-  double power_exponent = 1.0;  ///< contact cuts (energy per area of the cut / that of the reference) to this times as
-                                ///< fast, [0, 10]; 0: power, real speed and depth have no effect
-  std::optional<double> tear_energy_kpa;  ///< work per rest volume at which held tissue tears, kPa (= µJ/mm³), > 0; none: it does not
-  std::optional<double> slip_mm;      ///< tissue that the tool has left this far behind slips, > 0; none: never
-  /// Of the real tool, > 0; a study takes that of its path. Absent: the reference, and viscous tissue relaxes at the
-  /// pace of the simulated tool.
+  double speed_mm_s = 13.0;           ///< of the simulated tool, [0.01, 100]
+  double dullness = 9.0;              ///< contact that a tet needs before it is removed, in reference steps, (0, 1000]
+  double reference_step_s = 0.02;     ///< τ₀, the time that one unit of dullness represents, (0, 1]
+  double power_w = 35.0;              ///< of the electrode, (0, 120]; a run takes it from its plan
+  double reference_power_w = 35.0;    ///< power for which dullness holds, (0, 120]; the paper's (II-B.3)
+  double reference_real_speed_mm_s = 7.0;  ///< speed of the real tool for which dullness holds, [0.1, 50]; the paper's
+                                           ///< (II-B.1)
+  double reference_depth_mm = 5.0;         ///< depth of its tip for which dullness holds, [0.5, 50]; the paper's
+  double power_exponent = 1.0;  ///< m: the dose grows as relative_energy()^m, [0, 10]; 0: power, real speed and depth
+                                ///< have no effect
+  std::optional<double> tear_energy_kpa;  ///< work per rest volume at which held tissue tears, kPa (= µJ/mm³),
+                                          ///< [1e-3, 1e6]; absent: tissue does not tear. Only with CutRule::Tets
+  std::optional<double> slip_mm;      ///< distance behind its holding place at which held tissue slips, > 0; absent: it
+                                      ///< never slips
+  /// Speed of the real tool, > 0; a run takes it from its path. Absent: the reference speed, and viscous tissue relaxes
+  /// in the time of the simulated tool.
   std::optional<double> real_speed_mm_s;
-  std::optional<double> depth_mm;     ///< of the tip, > 0; a study takes that of its path. Absent: the reference
-  double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step; (0, the tool's diameter or thickness]
-  double reach_mm = 0.25;             ///< a tet is in contact within the tool's radius + reach of its core, >= 0
-  double bond_stiffness_kpa_mm2 = 1500.0;  ///< pull on bonded tissue per volume and offset, kPa/mm² (= mN/mm⁴), >= 0; 0: no drag; finite meshes hold with less
-  double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, >= 0 and less than once round
-  double residual_tolerance = 0.15;   ///< each step's linear solve: |r| <= this · |contact force|, [1e-6, 0.3]; the next step puts the rest right
+  std::optional<double> depth_mm;     ///< of the real tool's tip, > 0; a run takes it from its path. Absent: the
+                                      ///< reference depth
+  double advance_per_step_mm = 0.26;  ///< tool travel in one simulation step, [0.01, 10] and at most the tool's
+                                      ///< diameter or thickness; not with CutRule::Paper
+  double reach_mm = 0.25;             ///< a tet is in contact within the tool's radius + reach of its core, [0, 5]
+  double bond_stiffness_kpa_mm2 = 1500.0;  ///< pull on held tissue per volume and offset, kPa/mm² (= mN/mm⁴), [0, 1e6];
+                                           ///< 0: no drag. Tets of finite size use a reduced value
+  double overlap_mm = kRingOverlapMm;      ///< a ring is cut this far beyond its start, [0, 50], less than once round
+  double residual_tolerance = 0.15;   ///< of each step's linear solve: |r| <= this · max(|pulls of the tool|, 5 mN),
+                                      ///< [1e-6, 0.3]; the next step corrects the remainder
   double max_step_mm =
-      1.0;  ///< farthest that a vertex moves in one step with the tool in (loose bits are held back; counted), > 0
+      1.0;  ///< greatest motion of a vertex in one step with the tool in, > 0; longer ones are shortened and counted
   CutRule rule = CutRule::Tets;
-  ContactCount contact_count = ContactCount::Keep;  ///< Paper: what becomes of a tet's count when contact is lost
-  // Lattice: in place of reach, bond stiffness and tear energy; not calibrated (docs/decisions/0010-cutting-law.md).
-  double kernel_radius_mm = 1.25;           ///< how far from its core the tool acts, [0.5, 5]
-  double dose_length_mm = 3.0;              ///< a point that does not move just parts where v d τ0 is this, [0.1, 10]
-  double hold_per_mm2 = 50.0;  ///< pull on a point per volume, offset and shear modulus, 1/mm², >= 0: the layer that
-                               ///< moves with the tool is 1/√ of it thick; 0: no drag
+  ContactCount contact_count = ContactCount::Keep;  ///< used only with CutRule::Paper
+  // Only with CutRule::Lattice, in place of reach, bond stiffness and tear energy. Not calibrated
+  // (docs/decisions/0010-cutting-law.md).
+  double kernel_radius_mm = 1.25;           ///< distance from its core within which the tool acts, [0.5, 5]
+  double dose_length_mm = 3.0;              ///< speed · dullness · τ₀ at which a fixed point of reference tissue in the
+                                            ///< tool's way just parts, [0.1, 10]
+  double hold_per_mm2 = 50.0;  ///< pull on a point per volume, offset and shear modulus, 1/mm², [0, 1e4]; 0: no drag.
+                               ///< The layer that moves with the tool is 1/√hold_per_mm2 thick
 
-  /// Contact time that removes a tet of the reference tissue at the reference energy, s.
+  /// Returns the contact time that removes a tet of the reference tissue at the reference energy, s.
   [[nodiscard]] double dwell_s() const { return dullness * reference_step_s; }
-  /// Energy per area of the cut over that of the references: (P / P_ref) (u_ref h_ref) / (u h).
+  /// Returns the energy per area of the cut divided by that at the references: (P / P_ref) (u_ref h_ref) / (u h).
   [[nodiscard]] double relative_energy() const;
-  /// Dose per second of contact with the reference tissue, 1/s: relative_energy()^m / (d τ₀).
+  /// Returns the dose per second of contact with the reference tissue, 1/s: relative_energy()^m / (d τ₀).
   [[nodiscard]] double dwell_rate_per_s() const;
-  /// How long a step of the simulated tool takes for the tissue, s.
+  /// Returns the time that passes for viscous tissue in a step of the simulated tool, s: that of the real tool over the
+  /// same travel.
   [[nodiscard]] double tissue_s(double step_s) const {
     return step_s * speed_mm_s / real_speed_mm_s.value_or(speed_mm_s);
   }
-  /// Duration of one simulation step, s. The paper's rule counts steps, and those of SOFA take the same time at every
-  /// speed: in steps of the same travel, speed would have no effect.
+  /// Returns the duration of one simulation step, s. With the paper's rule it is reference_step_s at every speed, as in
+  /// SOFA: that rule counts steps, and in steps of equal travel the speed would have no effect.
   [[nodiscard]] double step_s() const {
     return rule == CutRule::Paper ? reference_step_s : advance_per_step_mm / speed_mm_s;
   }
-  /// Tool travel in one simulation step, mm.
+  /// Returns the tool's travel in one simulation step, mm.
   [[nodiscard]] double advance_mm() const {
     return rule == CutRule::Paper ? speed_mm_s * reference_step_s : advance_per_step_mm;
   }
 };
-/// What decides when tissue is cut; a case file puts the tissue's toughness behind it.
+/// Describes the settings that decide when tissue is cut. A case file adds the tissue's toughness after them.
 inline void describe_effect(Visitor& v, CutSettings& s) {
   v({"speed_mm_s", "Of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
   v({"dullness", "Contact needed before a tetrahedron is removed, in reference steps.", "steps"}, s.dullness,
@@ -106,7 +116,7 @@ inline void describe_effect(Visitor& v, CutSettings& s) {
     s.tear_energy_kpa, {1e-3, 1e6});
   v({"slip_mm", "Tissue that the tool has left this far behind slips; absent: never.", "mm"}, s.slip_mm, kPositive);
 }
-/// How the cut is simulated, step by step.
+/// Describes the settings of the simulation's steps.
 inline void describe_steps(Visitor& v, CutSettings& s) {
   v({"advance_per_step_mm",
      "Not with the rule paper: tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
@@ -141,7 +151,9 @@ inline void describe(Visitor& v, CutSettings& s) {
   describe_steps(v, s);
 }
 
-/// Every violation; empty: valid. The step is checked against the tool's diameter or thickness.
+/// Returns all violations; empty: the settings are valid. Also checks the tool's travel in one step, and that the
+/// contact needed for a cut takes at most 600 s.
+/// @param tool_diameter_mm  diameter or thickness of the tool.
 [[nodiscard]] std::vector<Problem> validate(const CutSettings& settings, double tool_diameter_mm);
 
 }  // namespace incise

@@ -16,17 +16,18 @@
 
 namespace incise {
 
+/// Settings of an incision.
 struct IncisionSettings {
   CutSettings cut;
   Tool tool;
   Vec3 approach = -Vec3::UnitZ();  ///< unit; the direction in which camera and surgeon look
-  double midline_layer_mm = 2.5;   ///< the mid-line is that of the kerf down to this depth below the surface, > 0
+  double midline_layer_mm = 2.5;   ///< depth below the surface down to which the kerf counts for the mid-line, > 0
   std::vector<double> layer_depths_mm{
-      1.0, 2.5, 4.0, 5.0};  ///< middles of the layers with a mid-line of their own; each >= 0.5, ascending
+      1.0, 2.5, 4.0, 5.0};  ///< middles of the layers, below the surface; each >= 0.5, ascending
   TriMesh tumor_surface;    ///< closed, stretched tissue before the cut, mm; without triangles: not known
-  /// Between the stretch and the cut, >= 0; for viscous tissue alone. Absent: it has relaxed.
+  /// Time from the stretch to the cut, >= 0; only for viscous tissue. Absent: the tissue has relaxed.
   std::optional<double> time_since_stretch_s;
-  int frames = 0;           ///< moments to keep for pictures, evenly spaced over the cut; 0: none
+  int frames = 0;           ///< frames to keep for pictures, evenly spaced over the cut, >= 0; at most one per step
 };
 inline void describe(Visitor& v, IncisionSettings& s) {
   v("cut", s.cut, "How the tool cuts.");
@@ -40,29 +41,31 @@ inline void describe(Visitor& v, IncisionSettings& s) {
   v("frames", s.frames, "Moments to keep for pictures.", kNotNegative);
 }
 
-/// A simulated incision, however it ended.
+/// Result of a simulated incision, whether or not it succeeded.
 struct IncisionResult {
-  /// Success: the cut was carried out, and a ring closed. OpenLoop, NotConverged (positions became non-finite) or
-  /// Cancelled otherwise. The margin is not judged here: see evaluation.
+  /// Success: the cut was completed, and a ring closed. Otherwise OpenLoop, NotConverged (positions became non-finite,
+  /// or more than 1 % of the steps were not solved to the tolerance) or Cancelled. The margin is judged in evaluation.
   Outcome outcome = Outcome::NotConverged;
   std::optional<bool> is_closed_loop;  ///< absent for an open cut
   std::optional<double>
-      gap_mm;                  ///< ring that stayed open: width of the widest uncut bridge; absent: closed, or no kerf
-  double gap_deg = 0.0;        ///< ring that stayed open: largest angle without kerf
+      gap_mm;                  ///< of a ring that stayed open: width of the widest uncut bridge; otherwise, or if it is
+                               ///< not known, absent
+  double gap_deg = 0.0;        ///< of a ring that stayed open: largest angle without kerf
   double kerf_width_mm = 0.0;  ///< mean, across the mid-line, stretched tissue before the cut
   std::optional<Contour> centerline;  ///< mid-line of the kerf, on the surface, stretched tissue before the cut, mm
-  std::optional<Contour> inner_edge;  ///< border of the tissue inside the ring, tool out, tissue still stretched, mm
-  Contour final_tumor_edge;           ///< where the tumour edge lies then, mm
+  std::optional<Contour> inner_edge;  ///< edge of the kerf next to the tumour, final configuration, mm; only for a ring
+  Contour final_tumor_edge;           ///< the tumour edge in the final configuration, mm
   KerfMeasures kerf;                  ///< body, layers, depth, drag and deep margin
   CutRecord record;
   CutState final_state;  ///< tool out, tissue still stretched
   std::vector<CutFrame> frames;  ///< on the split mesh of final_state
   std::vector<CutStepLog> steps;
   std::size_t solver_iterations = 0;   ///< sum over all steps
-  bool is_at_rest = false;             ///< no vertex moved by more than 0.001 mm in the last step, the tool out
+  bool is_at_rest = false;             ///< the tool is out, and the last step was solved and moved each vertex by less
+                                       ///< than 0.001 mm
   std::size_t unconverged_steps = 0;   ///< steps whose linear solve reached its limit
-  std::size_t held_back_vertices = 0;  ///< vertex steps cut to CutSettings::max_step_mm
-  std::size_t inverted_tets = 0;       ///< live tets of negative volume at the end
+  std::size_t held_back_vertices = 0;  ///< motions of vertices shortened to CutSettings::max_step_mm, over all steps
+  std::size_t inverted_tets = 0;       ///< live tets of zero or negative volume at the end
   std::size_t slipped_bonds = 0;       ///< slips, summed over all steps
   double peak_tool_force_mn = 0.0;
   double peak_tool_torque_mn_mm = 0.0;  ///< about the tool's tip
@@ -97,22 +100,21 @@ inline void describe(Visitor& v, IncisionResult& r) {
   v("wall_s", r.wall_s, "Time that the simulation took.");
 }
 
-/// An incision that has not begun: the tool over the first waypoint, the tissue stretched.
+/// Returns an incision that has not begun: the tool at the first entry point, the tissue stretched.
 /// @param stretched  equilibrium of the clamped and stretched tissue.
 /// @param path       frame sim_stretched, waypoints on the surface.
-/// @throws InvalidArgument for settings or a path that cannot be used (the list of violations).
+/// @throws InvalidArgument listing the violations of the settings, or for a path that ToolProgram does not accept.
 [[nodiscard]] IncisionProgress begin_incision(const TissueModel& model, const TissueState& stretched,
                                               const ToolPath& path, const IncisionSettings& settings);
 
-/// Carries an incision from where it is to its end: tool program, cut, tool out, relaxation, and the contours that are
-/// measured.
-/// @param path      its tumour edge is carried along with the tissue.
-/// @param progress  of this model, stretched tissue, path and settings; it has not begun, or is one that `keep` was
-/// shown.
-/// @param keep      with it, a monitor that asks to stop is obeyed at the next renewal step (at most 20 steps later),
-/// so that nothing
-///                  that was computed is lost; without it at once.
-/// @throws InvalidArgument as begin_incision, or when the progress is of another mesh.
+/// Continues an incision to its end: runs the rest of the tool program, takes the tool out, lets the tissue come to
+/// rest, and measures the cut.
+/// @param path      as for begin_incision; its tumour edge, if any, moves with the tissue.
+/// @param progress  of this model, stretched tissue, path and settings: from begin_incision, or passed to `keep`.
+/// @param keep      receives the progress at each renewal step. With it, a cancelled incision stops at the next renewal
+///                  step (at most 20 steps later), so no computed step is lost; without it, at once.
+/// @throws InvalidArgument as begin_incision; if the progress is of another mesh; for a tumour edge more than 0.5 mm
+///         off the tissue; for a tumour surface that encloses no volume.
 [[nodiscard]] IncisionResult continue_incision(const TissueModel& model, const TissueState& stretched,
                                                const ToolPath& path, const IncisionSettings& settings,
                                                IncisionProgress progress, Workers& workers, Monitor& monitor,
@@ -123,7 +125,9 @@ inline void describe(Visitor& v, IncisionResult& r) {
                                                const ToolPath& path, const IncisionSettings& settings, Workers& workers,
                                                Monitor& monitor);
 
-/// Skin of the live tets at given positions, with all N vertices kept in order.
+/// Returns the skin of the live tets, with all N vertices in their order.
+/// @param positions  of the mesh's vertices, N x 3, mm.
+/// @param is_live    one flag per tet; empty: all tets are live.
 [[nodiscard]] TriMesh skin_of(const TetMesh& mesh, std::span<const Vec3> positions,
                               std::span<const std::uint8_t> is_live = {});
 

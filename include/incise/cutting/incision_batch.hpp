@@ -18,32 +18,32 @@ struct IncisionJob {
 /// One of several incisions, each into its own stretched tissue.
 struct IncisionTask {
   const TissueModel* model = nullptr;      ///< outlives the call
-  const TissueState* stretched = nullptr;  ///< likewise
+  const TissueState* stretched = nullptr;  ///< outlives the call
   IncisionJob job;
 };
 
-/// What came of a job.
+/// Result of a job.
 struct IncisionJobResult {
-  IncisionResult incision;  ///< NotConverged when there is a problem; Cancelled and empty when it was not begun
+  IncisionResult incision;  ///< NotConverged if there is a problem; Cancelled and empty if the job did not begin
   std::string
-      problem;  ///< why the job could not be carried out (settings or a path that cannot be used); empty: it was
+      problem;  ///< why the job could not run (InvalidArgument of simulate_incision); empty: it ran
 };
 
-/// Simulates incisions side by side over one model and one stretched state, each on one thread: as many at a time as
-/// `workers` has threads. Each result has the bits that simulate_incision gives; one that cannot be carried out does
-/// not touch the others. When the monitor asks to stop, incisions under way end as Cancelled where they are, those that
-/// have ended are whole. Each incision under way holds a workspace of its own, and each result its final state and
-/// frames.
-/// @returns one result per job, in their order.
+/// Simulates several incisions into one stretched tissue side by side, each on one thread, at most as many at a time as
+/// `workers` has threads. Each result is bit for bit that of simulate_incision. A job that cannot run does not affect
+/// the others. When the monitor cancels, running incisions end as Cancelled, and finished results remain complete. Each
+/// running incision holds its own workspace; each result holds its final state and frames.
+/// @returns one result per job, in the order of `jobs`.
 [[nodiscard]] std::vector<IncisionJobResult> simulate_incisions(const TissueModel& model, const TissueState& stretched,
                                                                 std::span<const IncisionJob> jobs, Workers& workers,
                                                                 Monitor& monitor);
 
-/// Is given what came of a task as soon as that has ended, cancelled ones too: by any thread, one call at a time. What
-/// it throws ends the whole, as an exception of Workers.
+/// Receives the result of each task when the task ends, cancelled ones included. Called from any thread, one call at a
+/// time. An exception from it ends the batch, and Workers rethrows it.
 using IncisionTaken = std::function<void(std::size_t task, IncisionJobResult result)>;
 
-/// The same over several tissues, without keeping the results: each is handed to `take` when it ends.
+/// Simulates several incisions side by side, as above, each into its own tissue. Keeps no results: passes each to
+/// `take` when its incision ends.
 void simulate_incisions(std::span<const IncisionTask> tasks, Workers& workers, Monitor& monitor,
                         const IncisionTaken& take);
 

@@ -8,10 +8,11 @@
 
 namespace incise {
 
-/// Memory that stretching a body and cutting it takes at most, bytes, beside the mesh that is there already: model,
-/// states, matrix, solver and the frames that are kept. Counted from the arrays that grow with the body; a test holds
-/// it to 30 % of what a cut was seen to take.
-/// @param viscous_terms  Prony terms; absent: the tissue is not viscous. @param frames  see IncisionSettings.
+/// Estimates the peak memory for stretching and cutting a body, bytes, without the mesh: model, states, matrix, solver
+/// and kept frames. Counts the arrays that grow with the body. A test checks that the estimate is within 30 % of the
+/// measured memory.
+/// @param frames         see IncisionSettings.
+/// @param viscous_terms  number of Prony terms; absent: the tissue is not viscous.
 [[nodiscard]] std::uint64_t expected_memory_bytes(std::size_t vertices, std::size_t tets, VolumeTreatment volume,
                                                   int frames, std::optional<std::size_t> viscous_terms = {});
 

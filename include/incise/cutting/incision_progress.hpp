@@ -11,7 +11,7 @@ namespace incise {
 /// The tissue at one moment of the cut.
 struct CutFrame {
   double time_s = 0.0;
-  int step = 0;  ///< after which: what went up to it is gone
+  int step = 0;  ///< number of steps done
   ToolPose tool;
   bool is_tool_in = true;
   Points positions;  ///< N x 3, mm
@@ -26,12 +26,12 @@ inline void describe(Visitor& v, CutFrame& f) {
 
 /// One line of the log of a cut.
 struct CutStepLog {
-  double time_s = 0.0;
+  double time_s = 0.0;    ///< at the end of the step, since the tool began to plunge
   int iterations = 0;     ///< of the linear solver
-  bool converged = true;  ///< the linear solve did not reach its limit
+  bool converged = true;  ///< whether the linear solve reached its tolerance
   std::size_t tets_in_contact = 0;
-  std::size_t removed = 0;
-  std::size_t held_back_vertices = 0;     ///< vertices whose step was cut to CutSettings::max_step_mm
+  std::size_t removed = 0;                ///< tets, loose fragments included
+  std::size_t held_back_vertices = 0;     ///< vertices whose motion was shortened to CutSettings::max_step_mm
   std::size_t slipped = 0;                ///< bonds, or points, that slipped
   Vec3 tool_force_mn = Vec3::Zero();      ///< of the tissue on the tool
   Vec3 tool_torque_mn_mm = Vec3::Zero();  ///< of the tissue on the tool, about its tip
@@ -48,11 +48,11 @@ inline void describe(Visitor& v, CutStepLog& s) {
   v("tool_torque_mn_mm", s.tool_torque_mn_mm, "Of the tissue on the tool, about its tip.");
 }
 
-/// An incision on its way, as a value: all that its further course depends on beside tissue, path and settings, and
-/// what it has left behind so far.
+/// An unfinished incision as a value: the state that, with model, path and settings, determines how it continues, and
+/// the results so far.
 struct IncisionProgress {
   CutState state;
-  int relaxation_steps = 0;  ///< done since the tool is out; 0 while it is in
+  int relaxation_steps = 0;  ///< done since the tool came out; 0 while it is in
   std::vector<CutStepLog> steps;
   std::vector<CutFrame> frames;
   double wall_s = 0.0;  ///< spent so far, all processes together
@@ -65,8 +65,8 @@ inline void describe(Visitor& v, IncisionProgress& p) {
   v("wall_s", p.wall_s, "Time spent so far.");
 }
 
-/// Is shown the progress at each renewal step (see is_renewal_step), from which a later call, in another process too,
-/// goes on with the same bits. `is_interrupted`: the monitor asked to stop, and this is the last that will be shown.
+/// Receives the progress at each renewal step (see is_renewal_step). A later call, even in another process, can
+/// continue from it with the same bits. `is_interrupted`: the monitor has cancelled, and this is the last call.
 using ProgressKeeper = std::function<void(const IncisionProgress& progress, bool is_interrupted)>;
 
 }  // namespace incise

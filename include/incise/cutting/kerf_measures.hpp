@@ -10,7 +10,7 @@
 
 namespace incise {
 
-/// Mean and range of a list of numbers, in their unit.
+/// Mean and range of a list of numbers, in the numbers' unit.
 struct Spread {
   double mean = 0.0;
   double min = 0.0;
@@ -22,15 +22,16 @@ inline void describe(Visitor& v, Spread& s) {
   v("max", s.max, "Greatest.");
 }
 
-/// The kerf's mid-line in a layer of 1 mm at some depth below the skin.
+/// The kerf in a layer: 1 mm of tissue at a given depth below the skin.
 struct KerfLayer {
   double depth_mm = 0.0;              ///< of the layer's middle, along the approach
-  bool is_within_plan = false;        ///< the planned depth reaches the layer's middle; if not, nothing was looked for
+  bool is_within_plan = false;        ///< whether the greatest planned depth reaches the layer's middle; if not, the
+                                      ///< layer is not measured
   std::optional<bool> is_closed;      ///< whether a ring closed there; absent for an open cut, or outside the plan
-  std::optional<double> gap_mm;       ///< ring that stayed open there: width of the widest uncut bridge
+  std::optional<double> gap_mm;       ///< of a ring that stayed open there: width of the widest uncut bridge
   std::optional<Vec3> gap_place_mm;   ///< where that bridge is narrowest, stretched tissue before the cut, mm
-  double width_mm = 0.0;              ///< of the kerf there, mean; 0 without a mid-line
-  std::optional<Contour> centerline;  ///< at that depth, stretched tissue before the cut, mm
+  double width_mm = 0.0;              ///< mean width of the kerf there; 0 without a mid-line
+  std::optional<Contour> centerline;  ///< mid-line at that depth, stretched tissue before the cut, mm
 };
 inline void describe(Visitor& v, KerfLayer& l) {
   v("depth_mm", l.depth_mm, "Of the layer's middle, along the approach.");
@@ -42,12 +43,13 @@ inline void describe(Visitor& v, KerfLayer& l) {
   v.bulk("centerline", l.centerline, "The mid-line there, stretched tissue before the cut.");
 }
 
-/// The kerf as a body, in the stretched tissue before the cut: the removed tets together.
+/// The kerf as a body, in the stretched tissue before the cut: all removed tets or, of a cut by points, the tissue
+/// whose dose has reached 1.
 struct KerfBody {
-  TriMesh surface;          ///< their boundary, outwards; sheets may touch
-  double volume_mm3 = 0.0;  ///< enclosed: the sum of the tets' volumes there
+  TriMesh surface;          ///< boundary, oriented outwards, mm; sheets may touch
+  double volume_mm3 = 0.0;  ///< enclosed by `surface`
   Manifoldness boundary;    ///< of `surface`
-  Manifoldness live_skin;   ///< of the skin of the tissue that is left
+  Manifoldness live_skin;   ///< of the skin of the live tets
 };
 inline void describe(Visitor& v, KerfBody& b) {
   v.begin({"kerf", "Boundary of the removed tets."});
@@ -58,12 +60,12 @@ inline void describe(Visitor& v, KerfBody& b) {
   v("live_skin", b.live_skin, "Of the skin of the tissue that is left.");
 }
 
-/// How deep the kerf goes along the path that the tool followed.
+/// Depth of the kerf along the tool's path.
 struct DepthReached {
   double planned_mm = 0.0;  ///< mean depth of the tool's tip below its entry points, along the approach
-  DepthProfile profile;     ///< see depth_along
+  DepthProfile profile;     ///< see depth_along; N points
   std::vector<double>
-      planned_at_mm;  ///< N, as the profile: depth of the tip below the entry point there, along the approach
+      planned_at_mm;  ///< N: planned depth of the tip there, along the approach; linear between waypoints
   Spread depth_mm;    ///< of the profile
 };
 inline void describe(Visitor& v, DepthReached& d) {
@@ -73,17 +75,17 @@ inline void describe(Visitor& v, DepthReached& d) {
   v.bulk("planned_at_mm", d.planned_at_mm, "At each place of the profile.");
 }
 
-/// How far tissue was from its place in the stretched, uncut body when it was cut: along the tool's course (lag) and
-/// across it (drift). One entry per step in which tets went that had been touched long enough; means over them,
-/// weighted by rest volume.
+/// Displacement of tissue, when it is cut, from its place in the stretched, uncut body: along the tool's direction of
+/// travel (lag) and across it (drift). One entry per step in which tets or points were cut: their mean, weighted by
+/// rest volume. Loose fragments do not count.
 struct TissueDrag {
   std::vector<double> time_s;        ///< ascending
-  std::vector<double> arclength_mm;  ///< that the tip had gone since the plunge; on a ring the overlap counts on
-  std::vector<double> lag_mm;  ///< positive: dragged ahead, so that tissue is cut that belongs farther on the way back
+  std::vector<double> arclength_mm;  ///< travel of the tip along the path; on a ring it continues into the overlap
+  std::vector<double> lag_mm;  ///< positive: dragged ahead; the cut tissue belongs farther back along the path
   std::vector<double>
-      drift_mm;  ///< positive: pushed outwards on a ring, to the left (seen against the approach) of an open cut
-  Spread lag;    ///< of the entries; means weighted by rest volume
-  Spread drift;
+      drift_mm;  ///< positive: pushed outwards on a ring, to the left (seen along the approach) of an open cut
+  Spread lag;    ///< of lag_mm; mean weighted by rest volume
+  Spread drift;  ///< of drift_mm; mean weighted by rest volume
 };
 inline void describe(Visitor& v, TissueDrag& d) {
   v("time_s", d.time_s, "Ascending.");
@@ -94,14 +96,14 @@ inline void describe(Visitor& v, TissueDrag& d) {
   v("drift", d.drift, "Likewise.");
 }
 
-/// How near the kerf comes to the body of the tumour, stretched tissue before the cut, mm. A place of the kerf is
-/// beneath the tumour when it lies farther along the approach than across it from the nearest point of the tumour, else
-/// beside it.
+/// Distance from the kerf to the tumour's surface, in the stretched tissue before the cut. A place of the kerf is
+/// beneath the tumour if, from the nearest point of the tumour, it lies farther along the approach than across it;
+/// otherwise it is beside the tumour.
 struct DeepMargin {
-  double nearest_mm = 0.0;           ///< in any direction; negative: the kerf enters the tumour that far
-  std::optional<double> beside_mm;   ///< least distance to what lies beside; absent: nothing does
-  std::optional<double> beneath_mm;  ///< least distance to what lies beneath; absent: nothing does
-  Spread floor_below_mm;  ///< along the path: by how much the kerf's floor lies deeper than the tumour's deepest point
+  double nearest_mm = 0.0;           ///< least distance in any direction; negative: depth of the kerf in the tumour
+  std::optional<double> beside_mm;   ///< least distance to the kerf beside the tumour; absent: none lies beside it
+  std::optional<double> beneath_mm;  ///< least distance to the kerf beneath the tumour; absent: none lies beneath it
+  Spread floor_below_mm;  ///< along the path: how much deeper the kerf's bottom lies than the tumour's deepest point
 };
 inline void describe(Visitor& v, DeepMargin& m) {
   v({"nearest", "Least distance of kerf and tumour; negative: the kerf enters it.", "mm"}, m.nearest_mm);
@@ -110,15 +112,16 @@ inline void describe(Visitor& v, DeepMargin& m) {
   v({"floor_below", "How much deeper the kerf's bottom is than the tumour.", "mm"}, m.floor_below_mm);
 }
 
-/// What came out of a cut, beside the two contours.
+/// Measures of a cut, apart from its mid-line and inner edge.
 struct KerfMeasures {
   KerfBody body;
-  std::vector<KerfLayer> layers;  ///< as asked for
+  std::vector<KerfLayer> layers;  ///< at IncisionSettings::layer_depths_mm
   DepthReached depth;
   std::optional<TissueDrag> drag;           ///< absent: nothing was cut, or the tip never moved along the path
   std::optional<DeepMargin> deep_margin;    ///< absent: nothing was cut, or the tumour's surface is not known
-  std::optional<Contour> final_centerline;  ///< the mid-line moved with the tissue on both its sides, tool out, mm;
-                                            ///< absent also where a straight line across it meets no tissue on one side
+  std::optional<Contour> final_centerline;  ///< the mid-line, moved with the tissue on both sides of it, tool out, mm;
+                                            ///< absent: no mid-line, or a place of it with no tissue in reach on one
+                                            ///< side
   std::optional<Contour>
       inner_edge_reference;  ///< the inner edge's material points in the stretched tissue before the cut, mm
 };
@@ -135,11 +138,11 @@ inline void describe(Visitor& v, KerfMeasures& k) {
          "The inner edge's points in the stretched tissue before the cut.");
 }
 
-/// A ring that closed, by its mid-line.
+/// The mid-line of a ring that closed.
 struct ClosedRing {
   double depth_mm = 0.0;       ///< of the layer's middle
   double half_width_mm = 0.0;  ///< of the kerf there
-  Contour midline;             ///< stretched tissue before the cut, lifted along the approach to the skin's height, mm
+  Contour midline;             ///< stretched tissue before the cut, moved back along the approach onto the skin, mm
 };
 inline void describe(Visitor& v, ClosedRing& r) {
   v("depth_mm", r.depth_mm, "Of the layer's middle below the skin.");
@@ -147,8 +150,8 @@ inline void describe(Visitor& v, ClosedRing& r) {
   v("midline", r.midline, "Stretched tissue before the cut, lifted along the approach to the skin's height.");
 }
 
-/// The shallowest layer in which the ring closed; nothing where none did.
-/// @param approach  unit length.
+/// Returns the ring of the shallowest layer in which it closed; nullopt: it closed in none.
+/// @param approach  unit; the direction in which the observer looks.
 [[nodiscard]] std::optional<ClosedRing> shallowest_closed_ring(const KerfMeasures& kerf, const Vec3& approach);
 
 }  // namespace incise

@@ -8,26 +8,28 @@
 
 namespace incise {
 
-/// Way of the tip once along a path, from its first waypoint at depth to its last or, on a ring, back to the first; mm.
+/// Returns the length of the tip's way along a path, mm: from the first waypoint, at depth, to the last or, on a ring,
+/// back to the first.
 [[nodiscard]] double tip_way_mm(const ToolPath& path);
 
-/// What the simulated tool does, as a function of time: plunge along the axis at the first waypoint, follow the waypoints (straight
-/// between them), overlap beyond the start if the path is a ring, stay for the time that removes a tet of the
-/// reference tissue at the electrode's power, and leave. All motion at CutSettings::speed_mm_s: the waypoints' own speeds are the robot's. The tool heads where it goes; a blade turns on the spot before it
-/// sets out in another direction, its edges at the same speed.
+/// The simulated tool's motion as a function of time: plunge along the axis at the first waypoint, follow the waypoints
+/// (straight between them), on a ring overlap beyond the start, and dwell for the time that removes a tet of the
+/// reference tissue. The tool moves at CutSettings::speed_mm_s throughout; the waypoints' speeds apply only to the
+/// robot. The heading is the direction of travel. Before a blade changes direction, it turns on the spot, its edges at
+/// that speed.
 class ToolProgram {
  public:
   enum class Phase { Plunge, Follow, Overlap, Dwell };
 
-  /// @pre path in PathFrame::SimStretched with at least 2 waypoints (3 for a ring), finite, unit axes, depth > 0; on a ring the overlap is
-  /// below tip_way_mm(path).
+  /// @throws InvalidArgument unless the path is in PathFrame::SimStretched and has at least 2 waypoints (3 for a ring),
+  /// all finite, with unit axes and depths > 0; or if the overlap of a ring is not below tip_way_mm(path).
   ToolProgram(const ToolPath& path, const CutSettings& settings, const Tool& tool);
 
   [[nodiscard]] double duration_s() const { return keys_.back().time_s; }
-  /// Pose at a time; before 0 and after the end: that of the nearer end.
+  /// Returns the pose at a time; before 0 the first pose, after the end the last.
   [[nodiscard]] ToolPose pose_at(double time_s) const;
   [[nodiscard]] Phase phase_at(double time_s) const;
-  /// Way of the tip since it began to plunge, mm; turns on the spot add nothing.
+  /// Returns the length of the tip's way since it began to plunge, mm; turns on the spot add nothing.
   [[nodiscard]] double way_mm_at(double time_s) const;
 
  private:

@@ -16,18 +16,20 @@ struct ContourValues {
   bool is_ring = true;  ///< the last point is the first one's neighbour
 };
 
-/// How much the neighbours on a contour tell the same thing twice.
+/// Correlation between neighbouring values on a contour.
 struct ContourCorrelation {
-  /// Points in a block: long enough for blocks to be nearly independent. 1 for independent points; at most
-  /// min(3√n, n/3), which an error that varies once round the ring would exceed.
+  /// Points in a block: enough for blocks to be nearly independent. 1 for independent points. At most min(3√n, n/3),
+  /// rounded up, which is too short for an error that varies once round the ring.
   std::size_t block = 1;
-  double standard_error = 0.0;  ///< of the mean, from the means of blocks of this length
-  /// Independent values that would give this standard error; about n for independent points. Absent without spread.
+  double standard_error = 0.0;  ///< of the mean, from the means of blocks of this length; in the values' unit
+  /// Number of independent values that would give this standard error; about n for independent points. Absent if all
+  /// values are equal.
   std::optional<double> n_effective;
 };
 
-/// Block length for the circular bootstrap, from the autocovariance: [PolitisWhite2004] as corrected in
-/// [PattonPolitisWhite2009]; on a ring the autocovariance goes round. @pre at least 3 values, all finite. O(n^1.5).
+/// Computes the block length for the circular bootstrap from the autocovariance, and what follows from it. On a ring,
+/// the autocovariance wraps round. O(n^1.5). Source: [PolitisWhite2004] as corrected in [PattonPolitisWhite2009].
+/// @throws InvalidArgument for fewer than 3 values or a value that is not finite.
 [[nodiscard]] ContourCorrelation contour_correlation(const ContourValues& contour);
 
 struct BootstrapSettings {
@@ -41,17 +43,17 @@ inline void describe(Visitor& v, BootstrapSettings& s) {
   v("level", s.level, "Of the interval.", {0.0, 1.0, true, true});
 }
 
-/// Two-tailed test of "the means over all points are equal" for these very contours, from circular block bootstrap
-/// [PolitisRomano1992]. It asks whether the points say more than chance along a contour would; it does not make
-/// specimens of them.
+/// Result of a two-tailed test of "the means over all points are equal" by circular block bootstrap
+/// [PolitisRomano1992]. It is about these contours only: whether their difference exceeds chance along a contour. It
+/// says nothing about other specimens.
 struct BootstrapTest {
   TestVerdict verdict = TestVerdict::TooFew;
   double difference = 0.0;  ///< after minus before, of the means over all points
   std::optional<double> standard_error;
   std::optional<double>
-      p;  ///< (1 + replicates that stray from the difference as far as it is from 0) / (1 + replicates)
-  std::optional<Interval> confidence;  ///< percentiles of the replicates
-  int replicates = 0;                  ///< as it was asked for
+      p;  ///< (1 + replicates at least as far from the difference as that is from 0) / (1 + replicates)
+  std::optional<Interval> confidence;  ///< of the difference: percentiles of the replicates
+  int replicates = 0;                  ///< as in the settings
   std::uint64_t seed = 0;
 };
 inline void describe(Visitor& v, BootstrapTest& t) {
@@ -64,8 +66,10 @@ inline void describe(Visitor& v, BootstrapTest& t) {
   v("seed", t.seed, "Of the draws.");
 }
 
-/// Draws each contour anew from its own blocks, which wrap round. One random engine, contours in order: serial.
-/// @pre at least one contour on each side, 3 values on each, all finite. O(replicates · points / block).
+/// Tests whether the mean over all points differs between `before` and `after`. In each replicate, every contour is
+/// redrawn from its blocks, which wrap round. Serial: the same seed gives the same result, bit for bit. O(replicates ·
+/// points / block).
+/// @pre at least one contour on each side, 3 values on each, all finite, valid settings (InvalidArgument).
 [[nodiscard]] BootstrapTest block_bootstrap_test(std::span<const ContourValues> before,
                                                  std::span<const ContourValues> after,
                                                  const BootstrapSettings& settings = {});

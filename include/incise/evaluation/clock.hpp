@@ -9,10 +9,10 @@
 
 namespace incise {
 
-/// Errors of the points that lie nearest to one hour of a clock face laid over the tumour.
+/// Signed errors of the points that lie nearest to one hour of a clock face over the tumour.
 struct ClockSector {
-  int hour = 12;           ///< 1 … 12; the sector reaches half an hour, 15 degrees, to both sides
-  std::size_t points = 0;  ///< 0: no cut there, and nothing below
+  int hour = 12;           ///< 1 … 12; the sector extends half an hour, 15 degrees, to either side
+  std::size_t points = 0;  ///< 0: no cut there, and the errors are absent
   std::optional<double> mean_mm;
   std::optional<double> min_mm;
   std::optional<double> max_mm;
@@ -25,15 +25,18 @@ inline void describe(Visitor& v, ClockSector& s) {
   v({"max_mm", "Greatest signed error.", "mm"}, s.max_mm);
 }
 
-/// Where points lie on a clock face about `center`, as the observer sees it along the approach: hours in [0, 12),
-/// clockwise, 0 = 12 o'clock.
-/// @param center   any point on the line of sight through the middle of the face, mm.
-/// @param twelve   direction of 12 o'clock; its part across the approach counts. @pre has one.
-/// @returns one value for each of `points`; a point on the line of sight itself counts as 0.
+/// Returns the clock position of each point, as the observer sees it along the approach: hours in [0, 12), clockwise, 0
+/// = 12 o'clock. A point on the line of sight through `center` gets 0.
+/// @param points   mm.
+/// @param center   any point on the line of sight through the middle of the clock face, mm, same frame.
+/// @param twelve   direction of 12 o'clock; only its part across the approach counts.
+/// @throws InvalidArgument if `twelve` has no part across the approach.
 [[nodiscard]] std::vector<double> clock_hours(const Points& points, const Vec3& center, const Vec3& approach,
                                               const Vec3& twelve);
 
-/// Signed errors, mm, sector by sector: 1, 2, … 12. @pre equally long.
+/// Returns the signed errors, mm, by sector: hours 1, 2, … 12.
+/// @param hours  clock position of each error, [0, 12).
+/// @throws InvalidArgument for different lengths, or an hour out of range.
 [[nodiscard]] std::array<ClockSector, 12> errors_by_clock(std::span<const double> hours,
                                                           std::span<const double> errors_mm);
 

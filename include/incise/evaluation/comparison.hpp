@@ -19,7 +19,7 @@ struct MeasuredSpecimen {
   bool is_ring = true;
 };
 
-/// Which error is compared.
+/// The error that is compared.
 enum class ErrorMeasure { Absolute, Signed };
 inline constexpr std::array<std::string_view, 2> kErrorMeasureNames{"absolute", "signed"};
 [[nodiscard]] constexpr Names names_of(ErrorMeasure) {
@@ -43,18 +43,18 @@ inline void describe(Visitor& v, ComparisonSettings& s) {
   describe(v, s.bootstrap);
 }
 
-/// Every violation; empty: valid.
+/// Returns every violation; empty if valid.
 [[nodiscard]] std::vector<Problem> validate(const ComparisonSettings& settings);
 
 /// One incision in a comparison.
 struct SpecimenRow {
   std::string name;
   bool is_after = false;
-  SampleMoments error_mm;  ///< of the measure that is compared
+  SampleMoments error_mm;  ///< of the error that is compared
   ContourCorrelation correlation;
 };
 
-/// A t-test with its name, as results in JSON show it.
+/// A t-test with its name, as written to JSON.
 struct NamedTest {
   std::string name;
   TTest test;
@@ -65,21 +65,21 @@ inline void describe(Visitor& v, NamedTest& t) {
   describe(v, t.test);
 }
 
-/// Shows `test` under `field`, together with its name; nothing but the test is read back.
+/// Describes `test` under `field`, together with its name; the name is not read back.
 inline void describe_test(Visitor& v, const Field& field, const char* name, TTest& test) {
   NamedTest named{name, test};
   v(field, named);
   test = named.test;
 }
 
-/// By contour point, as the paper tests: all points of all specimens in one pool, as if each were a specimen.
+/// Tests by contour point, as in the paper: the points of all specimens are pooled, as if each were a specimen.
 struct PooledTests {
   SampleMoments before, after;
   TTest student;  ///< the paper's
   TTest welch;
   std::optional<EffectSize> effect;
-  BootstrapTest bootstrap;          ///< the same question, but neighbours on a contour count as such
-  double n_effective_before = 0.0;  ///< independent values that the points are worth, summed over contours
+  BootstrapTest bootstrap;          ///< the same test, but with the correlation of neighbours on a contour
+  double n_effective_before = 0.0;  ///< sum of ContourCorrelation::n_effective; 1 for a contour without spread
   double n_effective_after = 0.0;
 };
 
@@ -95,14 +95,15 @@ inline void describe(Visitor& v, PooledTests& t) {
   v("block_bootstrap", t.bootstrap, "The same question, but neighbours on a contour count as such.");
 }
 
-/// By specimen: one value each, its mean error.
+/// Tests by specimen: each specimen counts once, by its mean error.
 struct SpecimenTests {
   SampleMoments before, after;
   TTest student;
   TTest welch;
-  std::optional<TTest> paired;  ///< only where the specimens are pairs
+  std::optional<TTest> paired;  ///< only for pairs of specimens
   std::optional<EffectSize> effect;
-  /// Specimens in each group (or pairs) with which the effect found here would show at alpha with the power asked for.
+  /// Fewest specimens in each group (or pairs) for which a test at ComparisonSettings::alpha detects the effect found
+  /// here with ComparisonSettings::power. Absent without an effect, and as in fewest_specimens.
   std::optional<std::size_t> fewest;
   [[nodiscard]] const TTest& main() const { return paired ? *paired : welch; }
 };
@@ -128,17 +129,18 @@ inline void describe(Visitor& v, SpecimenTests& t) {
   v("fewest_specimens", t.fewest, "In each group, or pairs, with which this effect would show.");
 }
 
-/// Whether incisions after a change miss by less than those before it.
+/// Result of compare: the errors of incisions before and after a change.
 struct Comparison {
-  std::vector<SpecimenRow> rows;  ///< before, then after, in the order given
+  std::vector<SpecimenRow> rows;  ///< before, then after, in the order of the input
   PooledTests points;
   SpecimenTests specimens;
 };
 
-/// @pre at least one specimen on each side; as many before as after where they are pairs.
+/// Compares the errors of incisions before and after a change, by point and by specimen.
+/// @pre at least one specimen on each side; pairs: as many before as after (InvalidArgument).
 /// @throws InvalidArgument with every violation of the settings, and for errors that are too few or not finite.
-/// Source: [Paper, III-A.1] for the test by point; departs from it by all the others: the points of one incision are
-/// not independent, and specimens, not points, are what a new patient is like.
+/// Source: [Paper, III-A.1] for the test by point. The other tests depart from the paper, because the points of one
+/// incision are not independent and a new patient is a new specimen, not a new point.
 [[nodiscard]] Comparison compare(std::span<const MeasuredSpecimen> before, std::span<const MeasuredSpecimen> after,
                                  const ComparisonSettings& settings = {});
 

@@ -4,11 +4,11 @@
 
 namespace incise {
 
-/// How far two curves are from being the same curve, in the picture along the approach. A missing arc, a second cut and
-/// a curve that turns back all show here, and not in the errors of the points that were cut.
+/// Hausdorff distances between two curves, in the picture along the approach. They show a missing arc, a second cut and
+/// a curve that turns back, which the errors of the points that were cut do not show.
 struct HausdorffDistance {
-  double from_first_mm = 0.0;   ///< the farthest that a point of the first curve lies from the second
-  double from_second_mm = 0.0;  ///< the farthest that a point of the second lies from the first: a missing arc
+  double from_first_mm = 0.0;   ///< greatest distance of a point of the first curve from the second
+  double from_second_mm = 0.0;  ///< greatest distance of a point of the second curve from the first: a missing arc
   [[nodiscard]] double symmetric_mm() const { return from_first_mm > from_second_mm ? from_first_mm : from_second_mm; }
 };
 inline void describe(Visitor& v, HausdorffDistance& d) {
@@ -17,8 +17,9 @@ inline void describe(Visitor& v, HausdorffDistance& d) {
   v({"from_ideal", "Farthest that a point of the second curve lies from the first.", "mm"}, d.from_second_mm);
 }
 
-/// Taken at the corners and at points every `step_mm` between them, to segments: at most step_mm/2 too small.
-/// @pre at least 2 points each (3 if closed), a length above 0, finite; step_mm > 0. O(points · segments).
+/// Computes both Hausdorff distances, from corners and from points about `step_mm` apart to segments: at most step_mm/2
+/// too small. O(points · segments).
+/// @pre at least 2 points each (3 if closed), a length above 0, finite; step_mm > 0.
 [[nodiscard]] HausdorffDistance hausdorff_distance(const Contour& first, const Contour& second, const Vec3& approach,
                                                    double step_mm);
 

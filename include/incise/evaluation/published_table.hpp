@@ -13,26 +13,26 @@
 
 namespace incise {
 
-/// A number as printed ("1.20": 1.2 ± 0.005). Absent for text that is no finite decimal number.
+/// Reads a number as printed ("1.20": 1.2 ± 0.005). Absent for text that is not a finite decimal number.
 [[nodiscard]] std::optional<PrintedNumber> printed_number(std::string_view text);
 
-/// What a table prints about one set of numbers.
+/// The statistics that a table prints of one set of numbers.
 struct PrintedGroup {
-  std::string name;  ///< of the columns; empty for the row's own
+  std::string name;  ///< of the group of columns; empty for the row's own columns
   PrintedNumber mean;
-  /// Taken for the sample standard deviation (n - 1). Absent: not printed, and 0 where n is 1.
+  /// Taken as the sample standard deviation (n - 1). Absent if not printed; then taken as 0 if n is 1.
   std::optional<PrintedNumber> sd;
   std::optional<PrintedNumber> max;
   std::optional<PrintedNumber> min;
   std::optional<std::size_t> n;
 };
 
-/// A row: a set of numbers, and perhaps the sets that it was pooled from.
+/// A row of a table: one set of numbers, and possibly the sets that it was pooled from.
 struct PrintedRow {
   std::string name;
   std::optional<PrintedGroup> total;
-  std::vector<PrintedGroup> parts;             ///< a part without max lies, as all do, below the total's
-  std::optional<PrintedNumber> score_percent;  ///< 0.75 mean + 0.25 max of the total, as per cent of some baseline
+  std::vector<PrintedGroup> parts;             ///< the total's max also bounds a part without max
+  std::optional<PrintedNumber> score_percent;  ///< 0.75 mean + 0.25 max of the total, in per cent of a baseline
 };
 
 struct AuditSettings {
@@ -50,22 +50,22 @@ inline void describe(Visitor& v, AuditSettings& s) {
   v("grain", s.grain, "Values are whole multiples of this (1 for counts): the GRIM test; needs n.", kPositive);
 }
 
-/// What no set of numbers can do. Each holds for every choice of digits behind the printed ones.
+/// Conditions that no set of numbers can meet, whatever the digits behind the printed ones.
 enum class AuditRule {
   MeanBelowLeast,  ///< mean < least possible value
   NegativeSd,
   MaxBelowMean,
   MinAboveMean,
   SdTooLarge,         ///< sd² > n/(n−1) (max − mean)(mean − min): [BhatiaDavis2000]
-  SdTooSmall,         ///< sd² < n/(n−1)² (max − mean)²: the greatest value alone strays more; needs n
-  MeanTooSmall,       ///< n · mean < max + (n − 1) · least: the greatest value alone needs more; needs n
+  SdTooSmall,         ///< sd² < n/(n−1)² (max − mean)²: the greatest value alone causes more spread; needs n
+  MeanTooSmall,       ///< n · mean < max + (n − 1) · least: the greatest value alone causes a greater mean; needs n
   MeanNotOnGrain,     ///< no sum of n multiples of the grain has this mean: [BrownHeathers2017]; needs n and grain
-  PooledMeanOutside,  ///< below every part's mean, or above
+  PooledMeanOutside,  ///< below the mean of every part, or above it
   PooledMeanOff,      ///< not Σ n_i mean_i / Σ n_i; needs n of every part
-  PooledNOff,         ///< n of the row is not the sum of its parts'; needs them
+  PooledNOff,         ///< n of the row is not the sum of the parts' n; needs n of the row and of its parts
   PooledSdTooLarge,  ///< (N−1) sd² > Σ (n_i−1) sd_i² + Σ n_i (mean_i − mean)²; without n: for any shares with that mean
   PooledSdTooSmall,  ///< (N−1) sd² < the same
-  ScoreOffBaseline,  ///< the per cent does not follow from mean, max and the baseline that most rows agree on
+  ScoreOffBaseline,  ///< the per cent does not follow from mean, max and the baseline of most rows
 };
 inline constexpr std::array<std::string_view, 14> kAuditRuleNames{
     "mean_below_least", "negative_sd",         "max_below_mean",      "min_above_mean",      "sd_too_large",
@@ -75,7 +75,7 @@ inline constexpr std::array<std::string_view, 14> kAuditRuleNames{
   return kAuditRuleNames;
 }
 
-/// Whose numbers; absent: the row's own columns.
+/// Describes the group of a finding; absent for the row's own columns.
 inline void describe_group(Visitor& v, std::string& group) {
   std::optional<std::string> named;
   if (!group.empty()) named = group;
@@ -83,14 +83,15 @@ inline void describe_group(Visitor& v, std::string& group) {
   if (v.sets()) group = named.value_or("");
 }
 
+/// A number that no data can produce.
 struct Finding {
   AuditRule rule = AuditRule::SdTooLarge;
-  std::string group;     ///< whose; empty: the row's own columns
-  double printed = 0.0;  ///< the number that cannot be
-  double bound = 0.0;    ///< what it would have to keep to, rounding allowed for
+  std::string group;     ///< name of the group; empty for the row's own columns
+  double printed = 0.0;  ///< the impossible number
+  double bound = 0.0;    ///< the nearest possible value, with allowance for rounding
 };
 
-/// One sentence for a person: rule, numbers, bound.
+/// Returns one sentence for a person: rule, number, bound.
 [[nodiscard]] std::string to_text(const Finding& finding);
 inline void describe(Visitor& v, Finding& f) {
   v("rule", f.rule, "That is broken.");
@@ -100,11 +101,11 @@ inline void describe(Visitor& v, Finding& f) {
   v.derived("text", to_text(f), "The same as a sentence.");
 }
 
-/// A rule that needs a number which the table does not print.
+/// A rule that could not be checked, because the table does not print a number that it needs.
 struct Unchecked {
   AuditRule rule = AuditRule::SdTooLarge;
   std::string group;  ///< as in Finding
-  std::string needs;
+  std::string needs;  ///< the missing number
 };
 
 inline void describe(Visitor& v, Unchecked& u) {
@@ -115,8 +116,8 @@ inline void describe(Visitor& v, Unchecked& u) {
 
 struct AuditedRow {
   std::string name;
-  std::vector<Finding> findings;         ///< empty: nothing impossible
-  std::vector<Unchecked> not_checkable;  ///< what "nothing impossible" does not cover
+  std::vector<Finding> findings;         ///< empty if nothing impossible was found
+  std::vector<Unchecked> not_checkable;  ///< rules that could not be checked
 };
 
 inline void describe(Visitor& v, AuditedRow& r) {
@@ -127,12 +128,13 @@ inline void describe(Visitor& v, AuditedRow& r) {
 }
 
 struct Audit {
-  std::vector<AuditedRow> rows;  ///< as given
+  std::vector<AuditedRow> rows;  ///< in the order of the table
   std::size_t impossible_rows = 0;
-  /// Baselines that explain the per cents of as many rows as any does; absent where no row has one.
+  /// Baselines that explain the per cents of most rows. Absent if no row has one, or if no baseline explains more than
+  /// half of several rows.
   std::optional<BaselineRange> baseline_mm;
-  std::size_t rows_on_baseline = 0;
-  std::size_t scored_rows = 0;  ///< rows with a per cent above 0, mean and max
+  std::size_t rows_on_baseline = 0;  ///< rows whose per cent these baselines explain
+  std::size_t scored_rows = 0;       ///< rows with a mean, a max and a per cent above its rounding
 };
 
 inline void describe(Visitor& v, Audit& a) {
@@ -152,7 +154,7 @@ inline void describe(Visitor& v, Audit& a) {
   if (v.sets()) a.baseline_mm = range;
 }
 
-/// Tells which rows of a published table cannot be. A row that passes is possible, which is less than right.
+/// Finds the rows of a published table that no data can produce. A row that passes is possible, not necessarily right.
 /// @throws InvalidArgument with every violation of the settings; for a number that is not finite.
 [[nodiscard]] Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings = {});
 

@@ -20,12 +20,12 @@ inline void describe(Visitor& v, Summary& s) {
   v("max", s.max, "Greatest.");
 }
 
-/// @pre at least one value, all finite; otherwise InvalidArgument naming the first bad index.
+/// Computes mean, spread and range. @throws InvalidArgument without values, or naming the first that is not finite.
 [[nodiscard]] Summary summarize(std::span<const double> values);
 
-/// Of the standard normal distribution: its density, and the probability of a number below z.
-inline constexpr double kNormal95 = 1.959963984540054;  ///< its two-sided quantile of 95 %
-[[nodiscard]] double normal_density(double z);
-[[nodiscard]] double normal_share_below(double z);
+/// Two-sided 95 % quantile of the standard normal distribution.
+inline constexpr double kNormal95 = 1.959963984540054;
+[[nodiscard]] double normal_density(double z);      ///< density of the standard normal distribution
+[[nodiscard]] double normal_share_below(double z);  ///< probability of a standard normal number below z
 
 }  // namespace incise

@@ -11,14 +11,14 @@
 
 namespace incise {
 
-/// What a t-test needs of a sample; `sd` is the sample standard deviation (n - 1).
+/// Size, mean and spread of a sample, the input of a t-test.
 struct SampleMoments {
   std::size_t n = 0;
   double mean = 0.0;
-  double sd = 0.0;  ///< not read where n = 1
+  double sd = 0.0;  ///< sample standard deviation (n - 1); not used if n = 1
 };
 
-/// @pre at least one value, all finite.
+/// Computes the moments of a sample. @throws InvalidArgument without values, or for one that is not finite.
 [[nodiscard]] SampleMoments moments_of(std::span<const double> values);
 
 struct Interval {
@@ -26,7 +26,7 @@ struct Interval {
   double high = 0.0;
 };
 
-/// An interval as a list of its two ends.
+/// Describes an interval as a list of its two ends.
 inline void describe_interval(Visitor& v, const Field& field, std::optional<Interval>& interval) {
   std::optional<std::array<double, 2>> ends;
   if (interval) ends = {interval->low, interval->high};
@@ -36,26 +36,27 @@ inline void describe_interval(Visitor& v, const Field& field, std::optional<Inte
   if (ends) interval = Interval{(*ends)[0], (*ends)[1]};
 }
 
-/// Whether a test could say anything.
+/// Whether a test could be made.
 enum class TestVerdict {
   Tested,
-  TooFew,    ///< not enough values to know their spread: one specimen has none
-  NoSpread,  ///< no value differs from the others of its sample, so that t has no denominator
+  TooFew,    ///< too few values to estimate their spread
+  NoSpread,  ///< all values of each sample are equal, so the denominator of t is 0
 };
 inline constexpr std::array<std::string_view, 3> kTestVerdictNames{"tested", "too_few", "no_spread"};
 [[nodiscard]] constexpr Names names_of(TestVerdict) {
   return kTestVerdictNames;
 }
 
-/// A two-tailed test of "the two means are equal". All differences are after minus before: negative = smaller after.
+/// Result of a two-tailed test of "the two means are equal". All differences are after minus before: negative = smaller
+/// after.
 struct TTest {
   TestVerdict verdict = TestVerdict::TooFew;
   double difference = 0.0;  ///< of the means
   std::optional<double> standard_error;
-  std::optional<double> df;            ///< absent where there are too few values
+  std::optional<double> df;            ///< degrees of freedom; absent for too few values
   std::optional<double> t;             ///< difference / standard_error; absent unless tested
   std::optional<double> p;             ///< (0, 1]; absent unless tested
-  std::optional<Interval> confidence;  ///< of the difference, at the level asked for; absent unless tested
+  std::optional<Interval> confidence;  ///< of the difference, at the given level; absent unless tested
 };
 
 inline void describe(Visitor& v, TTest& t) {
@@ -68,25 +69,28 @@ inline void describe(Visitor& v, TTest& t) {
   v("verdict", t.verdict, "Whether the test could say anything.");
 }
 
-/// Two samples that share one variance. Source: [Student1908]; needs n_before + n_after >= 3.
-/// @pre n >= 1, sd >= 0, all finite; level in (0, 1).
+/// Student's t-test of two samples with a common variance. TooFew unless n_before + n_after >= 3. Source:
+/// [Student1908].
+/// @param level  of the confidence interval, (0, 1).
+/// @pre n >= 1, sd >= 0, all finite (InvalidArgument).
 [[nodiscard]] TTest student_t_test(const SampleMoments& before, const SampleMoments& after, double level = 0.95);
 
-/// Two samples, each with a variance of its own: degrees of freedom after Satterthwaite. Source: [Welch1947]; needs
-/// 2 values in each. @pre as student_t_test.
+/// Welch's t-test of two samples with separate variances, with Satterthwaite's degrees of freedom. TooFew unless each
+/// sample has 2 values. Source: [Welch1947]. @pre as student_t_test.
 [[nodiscard]] TTest welch_t_test(const SampleMoments& before, const SampleMoments& after, double level = 0.95);
 
-/// The same things measured twice: a test of the differences after[i] - before[i]. Needs 2 pairs.
-/// @pre equally long, at least one pair, all finite.
+/// Paired t-test of the differences after[i] - before[i]. TooFew for a single pair.
+/// @pre equally long, at least one pair, all finite (InvalidArgument).
 [[nodiscard]] TTest paired_t_test(std::span<const double> before, std::span<const double> after, double level = 0.95);
 
-/// Probability that |T| >= |t| for Student's distribution. @pre df > 0, t finite.
+/// Returns the probability that |T| >= |t| for Student's distribution with `df` degrees of freedom. @pre df > 0, t
+/// finite.
 [[nodiscard]] double two_tailed_p(double t, double df);
 
-/// Fewest values in each of two samples of equal size for which student_t_test would find the means of `before` and
-/// `after` to differ at level `alpha`: what a published "p < 0.001" silently claims about n. `n` of the samples is not
-/// read. Absent where the means are equal or more than 10^7 would be needed.
-/// @pre alpha in (0, 1).
+/// Returns the fewest values in each of two samples of equal size for which student_t_test finds p < `alpha` for these
+/// means and standard deviations: the n that a published "p < 0.001" implies. `n` of the samples is not used. Absent if
+/// the means are equal, without spread, and if more than 2^23 (about 8.4 million) values would be needed.
+/// @pre alpha in (0, 1) (InvalidArgument).
 [[nodiscard]] std::optional<std::size_t> fewest_for_significance(const SampleMoments& before,
                                                                  const SampleMoments& after, double alpha);
 

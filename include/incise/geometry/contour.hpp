@@ -17,9 +17,10 @@ inline void describe(Visitor& v, Contour& c) {
   v("is_closed", c.is_closed, "Whether the last point joins the first.");
 }
 
+/// Length, mm, with the segment that closes a closed contour.
 [[nodiscard]] double length_mm(const Contour& contour);
 
-/// `count` points evenly spaced by arc length, starting at the first point; an open contour keeps both ends.
+/// Returns `count` points evenly spaced by arc length, starting at the first point; an open contour keeps both ends.
 /// @pre at least 2 points, positive length, count >= 2 (3 if closed).
 [[nodiscard]] Contour resample(const Contour& contour, std::size_t count);
 
@@ -31,11 +32,11 @@ struct ContourPoint {
   double fraction = 0.0;     ///< along that segment, [0, 1]
 };
 
-/// Nearest point of the contour's segments to p. O(segments). @pre at least 2 points (1 is taken as that point).
+/// Returns the point of the contour nearest to p. O(segments). @pre at least 1 point, p finite.
 [[nodiscard]] ContourPoint nearest_on(const Contour& contour, const Vec3& p);
 
-/// A right-handed frame that looks along an approach direction: x and y span the picture, z points back at the observer.
-/// Maps points to pictures and back: `picture = (x, y, height)` in mm.
+/// A right-handed frame that looks along an approach direction: x and y span the picture, z points to the observer.
+/// Maps points to view coordinates (x, y, height), mm, and back.
 struct ViewFrame {
   Vec3 x = Vec3::UnitX();
   Vec3 y = Vec3::UnitY();
@@ -44,26 +45,27 @@ struct ViewFrame {
   [[nodiscard]] Vec3 from_view(const Vec3& q) const { return x * q.x() + y * q.y() + z * q.z(); }
 };
 
-/// The view along `approach` (need not be unit; @pre non-zero, finite). x and y are chosen so that for approach (0, 0, -1) they are
-/// world x and y.
+/// Returns the view along `approach`, which need not be unit. For approach (0, 0, -1), x and y are world x and y.
+/// @pre approach finite and not zero.
 [[nodiscard]] ViewFrame view_along(const Vec3& approach);
 
-/// Signed area, mm², of a closed contour seen against `approach`: positive = counter-clockwise.
+/// Signed area, mm², of a closed contour seen along `approach`: positive = counter-clockwise.
 [[nodiscard]] double signed_area_mm2(const Contour& contour, const Vec3& approach);
 
-/// The contour, reversed if needed so that it runs counter-clockwise seen against `approach`; the first point stays first.
+/// Returns the contour, reversed if necessary, so that it runs counter-clockwise seen along `approach`; the first point
+/// stays first.
 [[nodiscard]] Contour counter_clockwise(Contour contour, const Vec3& approach);
 
-/// The contour rotated to start at the point that lies farthest along `direction`. @pre closed.
+/// Returns the contour with its start moved to the point that lies farthest along `direction`. @pre closed.
 [[nodiscard]] Contour start_farthest_along(Contour contour, const Vec3& direction);
 
 /// Whether the closed polygon, seen along `approach`, contains p (even-odd rule).
 [[nodiscard]] bool contains_in_view(const Contour& polygon, const Vec3& p, const Vec3& approach);
 
-/// Whether any two segments that are not neighbours cross, seen along `approach`. O(n²).
+/// Whether any two segments that are not neighbours cross or touch, seen along `approach`. O(n²).
 [[nodiscard]] bool crosses_itself_in_view(const Contour& contour, const Vec3& approach);
 
-/// Mean of the points of the contour weighted by segment length, mm.
+/// Centroid of the curve, mm: mean of the segments' midpoints, weighted by length. @pre at least 1 point.
 [[nodiscard]] Vec3 curve_centroid(const Contour& contour);
 
 }  // namespace incise

@@ -9,16 +9,18 @@ namespace incise {
 
 // Gaussians sampled at whole steps (pixels, voxels, points) out to 4 sigma.
 
-/// How many steps away the last sample lies.
+/// Number of steps from the centre to the last sample: 4 sigma, rounded up. @param sigma  in steps.
 [[nodiscard]] int gaussian_reach(double sigma);
 
-/// exp(-k²/2σ²) at the steps k = 0, 1, … gaussian_reach(sigma). @param sigma  in steps, > 0.
+/// Returns exp(-k²/2σ²) for k = 0, 1, … gaussian_reach(sigma), not normalised. @param sigma  in steps, > 0.
 [[nodiscard]] std::vector<double> gaussian_weights(double sigma);
 
-/// Blur of a set as a function that is 1 in it and 0 outside, also beyond the picture. sigma = 0: unchanged.
+/// Returns the blurred indicator function of a set: before the blur it is 1 in the set and 0 elsewhere, also beyond the
+/// picture. sigma_mm = 0: no blur. @throws InvalidArgument for a negative sigma.
 [[nodiscard]] ScalarRaster blurred(const Raster& raster, double sigma_mm);
 
-/// Blurs along the three axes of the grid; outside it is 0. sigma = 0: unchanged.
+/// Blurs a volume in place along the three axes of its grid; values beyond the grid count as 0. sigma_voxels <= 0: no
+/// blur.
 void blur(GrayVolume& volume, double sigma_voxels);
 
 }  // namespace incise

@@ -7,13 +7,14 @@
 
 namespace incise {
 
-/// Where a set of triangles fails to be a closed manifold surface. All 0: every edge has two triangles and those round
-/// every vertex form one closed fan. The skin of whole tets is without open edges, but its sheets may touch.
+/// Counts of the places where a set of triangles fails to be a closed manifold surface. If there are none, every edge
+/// has two triangles and the triangles round every vertex form one closed fan. The skin of whole tets has no open
+/// edges, but its sheets may touch.
 struct Manifoldness {
-  std::size_t triangles = 0;
+  std::size_t triangles = 0;          ///< in the set
   std::size_t open_edges = 0;         ///< with one triangle
   std::size_t nonmanifold_edges = 0;  ///< with more than two: sheets touch along them
-  std::size_t pinched_vertices = 0;   ///< where sheets touch in this point alone: more than one fan, and no such edge
+  std::size_t pinched_vertices = 0;   ///< more than one fan but no such edge: sheets touch in this point alone
   [[nodiscard]] bool operator==(const Manifoldness&) const = default;
 };
 inline void describe(Visitor& v, Manifoldness& m) {
@@ -23,7 +24,7 @@ inline void describe(Visitor& v, Manifoldness& m) {
   v("pinched_vertices", m.pinched_vertices, "Vertices where sheets touch in this point alone.");
 }
 
-/// Counts them. @pre indices in range, no triangle with a corner twice.  O(n log n).
+/// Counts these places. @pre indices in range, no triangle with a corner twice.  O(n log n).
 [[nodiscard]] Manifoldness manifoldness_of(std::span<const Triangle> triangles);
 
 }  // namespace incise

@@ -15,8 +15,8 @@ struct Neighbour {
   double squared_mm2 = 0.0;  ///< squared distance
 };
 
-/// Nearest points in a fixed cloud (kd-tree). Copies the points. Answers come nearest first, ties by index, and may be
-/// asked for from several threads at once. Build O(n log n), query O(log n) typical.
+/// Finds nearest points in a fixed cloud (kd-tree). Copies the points. Results are sorted by distance, then by index.
+/// Several threads may query at once. Build O(n log n), query O(log n) typical.
 class NeighbourSearch {
  public:
   /// @pre at least one point, all finite.
@@ -27,9 +27,9 @@ class NeighbourSearch {
 
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] Neighbour nearest(const Vec3& p) const;
-  /// The `count` nearest points, or all there are.
+  /// Returns the `count` nearest points, or all points if there are fewer.
   [[nodiscard]] std::vector<Neighbour> nearest(const Vec3& p, std::size_t count) const;
-  /// All points closer than `radius_mm`.
+  /// Returns all points closer than `radius_mm`, which must be >= 0.
   [[nodiscard]] std::vector<Neighbour> within(const Vec3& p, double radius_mm) const;
 
  private:

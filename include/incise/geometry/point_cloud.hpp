@@ -18,67 +18,70 @@ namespace incise {
 /// Points of a surface, in no order, mm.
 struct PointCloud {
   Points points;   ///< N x 3
-  Points normals;  ///< N x 3, unit, outwards (towards whoever saw them); or empty: not known
+  Points normals;  ///< N x 3, unit, outwards (towards the observer); empty: unknown
 };
 
-/// The vertices of a mesh, with its point data `normals` where it has them (made unit; a file's normals of length 0
-/// count as not known: then the cloud has none).
+/// Returns the vertices of a mesh, with its point data `normals`, made unit, if it has them. If any of these has length
+/// 0, the cloud has no normals.
 [[nodiscard]] PointCloud cloud_of(const TriMesh& mesh);
-/// The cloud as a mesh without triangles, with point data `normals` where it has them: what files hold.
+/// Returns the cloud as a mesh without triangles, as files store it, with point data `normals` if it has normals.
 [[nodiscard]] TriMesh mesh_of(const PointCloud& cloud);
 
-/// Point data of a cloud that no camera saw: whatever is laid on it is labelled virtual. Files keep it.
+/// Name of the point data that marks a cloud that no camera saw: everything projected onto it is labelled virtual.
+/// Files keep the mark.
 inline constexpr const char* kVirtualMark = "virtual";
 [[nodiscard]] inline bool is_marked_virtual(const TriMesh& cloud) {
   return cloud.point_data.contains(kVirtualMark);
 }
 
-/// The points with the given numbers, in their order.
+/// Returns the points with the given indices, in the order of `indices`.
 [[nodiscard]] PointCloud subset(const PointCloud& cloud, std::span<const std::size_t> indices);
 
-/// The points within the box, its border included.
+/// Returns the points within the box, its border included.
 [[nodiscard]] PointCloud crop(const PointCloud& cloud, const Box3& box);
 
-/// One point per occupied cube of a grid: the mean of its points, and of their normals. Order: of the cubes, z slowest.
+/// Returns one point per occupied cube of a grid: the mean of its points and normals, in order of the cubes, z slowest.
 /// The grid starts at the cloud's lowest corner, so the result moves with the cloud.
 /// @pre voxel_mm > 0.  O(n log n).
 [[nodiscard]] PointCloud downsample(const PointCloud& cloud, double voxel_mm);
 
-/// Median distance from a point to its nearest neighbour, mm; 0 for fewer than 2 points. At most 2000 points are asked.
+/// Median distance from a point to its nearest neighbour, mm; 0 for fewer than 2 points. The median is taken over fewer
+/// than 4000 points.
 [[nodiscard]] double spacing_mm(std::span<const Vec3> points);
 
-/// Area, mm², of the surface that a sample stands for, from the distances to each point's 8th and 9th neighbours: to
+/// Area, mm², of the surface that a sample represents, from the distances to each point's 8th and 9th neighbours: to
 /// about 6 %, plus half a spacing or so along the border. 0 for fewer than 10 points.
 [[nodiscard]] double sampled_area_mm2(std::span<const Vec3> points);
 
-/// The cloud with normals of planes fitted to each point's neighbours, turned so that they look against `seen_along`.
-/// @param neighbours  that a plane is fitted to, the point included; at least 3.
+/// Returns the cloud with the normals of planes fitted to each point's neighbours, oriented against `seen_along`.
+/// @param neighbours  points to which a plane is fitted, the point itself included; at least 3.
 /// @param seen_along  direction in which the surface was seen (the camera's axis, the approach).
 [[nodiscard]] PointCloud with_normals(PointCloud cloud, const Vec3& seen_along, int neighbours, Workers& workers);
 
-/// Standard deviation, mm, of the points about planes fitted to their neighbours, as a median over the cloud: the noise
-/// of the cloud and the bend of its surface over that neighbourhood. 0 for fewer than 4 points. At most 2000 points are
-/// asked.
+/// Standard deviation, mm, of the points about planes fitted to their neighbours, as a median over the cloud. It
+/// contains the noise of the cloud and the curvature of its surface within the neighbourhood. 0 for fewer than 4
+/// points. The median is taken over fewer than 4000 points.
+/// @param neighbours  points to which a plane is fitted, the point itself included; at least 4.
 [[nodiscard]] double roughness_mm(std::span<const Vec3> points, int neighbours = 12);
 
-/// Leaves out points whose mean distance to their `neighbours` nearest ones is more than `deviations` standard
-/// deviations above the mean of the cloud. Source: [Rusu2008, 4.1].
+/// Returns the cloud without the points whose mean distance to their `neighbours` nearest ones is more than
+/// `deviations` standard deviations above the mean of the cloud. Source: [Rusu2008, 4.1].
 [[nodiscard]] PointCloud without_outliers(const PointCloud& cloud, int neighbours, double deviations, Workers& workers);
 
-/// A plane normal · p = offset and the points near it.
+/// A plane, normal · p = offset, and the indices of the points near it.
 struct PlaneFit {
   Vec3 normal = Vec3::UnitZ();
   double offset_mm = 0.0;
   std::vector<std::size_t> inliers;
 };
 
-/// The plane that lies within `tolerance_mm` of the most points, refitted to them by least squares; nothing for fewer
-/// than 3 points or points on a line. Source: [Fischler1981].
-/// @param trials  triples drawn.
+/// Returns the plane that lies within `tolerance_mm` of the most points, refitted to them by least squares; nullopt for
+/// fewer than 3 points or points on a line. Source: [Fischler1981].
+/// @param trials  number of triples drawn, > 0.
 [[nodiscard]] std::optional<PlaneFit> find_plane(std::span<const Vec3> points, double tolerance_mm, int trials,
                                                  Random& random);
 
-/// How a camera's cloud becomes the cloud of the tissue's surface.
+/// Settings that turn a camera's cloud into a cloud of the tissue's surface.
 struct CleaningSettings {
   std::optional<Box3> box;
   int planes = 0;
@@ -108,19 +111,19 @@ inline void describe(Visitor& v, CleaningSettings& s) {
   v.direction("seen_along", s.seen_along, "Direction of sight.");
 }
 
-/// Every violation; empty: valid.
+/// Returns every violation; empty if the settings are valid.
 [[nodiscard]] std::vector<Problem> validate(const CleaningSettings& settings);
 
 struct CleanedCloud {
   PointCloud cloud;
   std::size_t cropped = 0;       ///< points outside the box
-  std::vector<PlaneFit> planes;  ///< taken away; `inliers` number the points that were left at that time
+  std::vector<PlaneFit> planes;  ///< removed, normals towards the observer; `inliers` index the cloud before removal
   std::size_t beneath_planes = 0;
   std::size_t outliers = 0;
 };
 
-/// Crop, planes, outliers, downsampling, normals, in this order. The cloud may end up empty: the caller says whether
-/// that is of use.
+/// Crops a cloud, removes planes and outliers, downsamples it and adds normals, in this order. The result may be empty;
+/// the caller decides whether that is an error.
 /// @pre points finite, settings valid.
 [[nodiscard]] CleanedCloud clean_cloud(const PointCloud& cloud, const CleaningSettings& settings, Random& random,
                                        Workers& workers);

@@ -47,25 +47,26 @@ struct RasterOf : RasterGrid {
 using Raster = RasterOf<std::uint8_t>;  ///< 1 = in the set, 0 = not
 using ScalarRaster = RasterOf<double>;
 
-/// A grid whose pixel centres cover the box [low, high] and at least `border_mm` around it.
+/// Returns a grid whose pixel centres cover the box [low, high] and at least `border_mm` around it.
 /// @pre finite, low <= high, pixel > 0, border >= 0.  @throws InvalidArgument also for more than 10^8 pixels.
 [[nodiscard]] RasterGrid grid_around(const Vec2& low, const Vec2& high, double pixel_mm, double border_mm);
 
 /// Area of the set, mm².
 [[nodiscard]] double area_mm2(const Raster& raster);
 
-/// Value at a point by bilinear interpolation; pixels beyond the picture count as 0.
+/// Returns the value at a point by bilinear interpolation; pixels beyond the picture count as 0.
 [[nodiscard]] double sample(const ScalarRaster& raster, const Vec2& p);
 
-/// What an observer sees of a triangle surface, straight from above: per pixel the nearest surface.
+/// The part of a triangle surface that an observer sees straight from above: per pixel, the highest surface.
 struct DepthBuffer : RasterGrid {
-  std::vector<double> heights_mm;       ///< view z of the visible surface; not a number where there is none
+  std::vector<double> heights_mm;       ///< view z of the visible surface; NaN where there is none
   std::vector<std::int32_t> triangles;  ///< index of the visible triangle; -1 where there is none
 };
 
-/// Orthographic depth buffer. Of surfaces at the same height the triangle with the lower index is seen.
+/// Returns the orthographic depth buffer. Of triangles at the same height, the one with the lowest index is seen.
 /// @param in_view    vertices in view coordinates (x, y, height), mm; the observer is at +z.
-/// @param triangles  either way round; those seen edge-on or outside the grid are not drawn.
+/// @param triangles  of either orientation; those seen edge-on or outside the grid are not drawn.
+/// @throws InvalidArgument for a vertex out of range or not finite.
 [[nodiscard]] DepthBuffer depth_buffer(const RasterGrid& grid, std::span<const Vec3> in_view,
                                        std::span<const Triangle> triangles);
 

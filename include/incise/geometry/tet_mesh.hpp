@@ -63,7 +63,7 @@ inline void describe(Visitor& v, TriMesh& m) {
 /// Volume enclosed by a closed, outward oriented surface, mm³ (divergence theorem).
 [[nodiscard]] double enclosed_volume_mm3(const TriMesh& surface);
 
-/// The outer corners of face f (0..3) of a tet: the face opposite corner f, counter-clockwise seen from outside.
+/// Returns the corners of face f (0..3) of a tet: the face opposite corner f, counter-clockwise seen from outside.
 [[nodiscard]] Triangle face_of(const Tet& tet, int face);
 
 /// One triangle of the mesh's skin and the tet that it belongs to.
@@ -72,38 +72,41 @@ struct BoundaryFace {
   TetId tet;
 };
 
-/// The faces that belong to exactly one of the tets for which `is_live` is true (empty span: all tets), in order of tet, then face.
-/// O(M log M).
+/// Returns the faces that belong to exactly one live tet, in order of tet, then face. O(M log M).
+/// @param is_live  per tet, 1 if it is live; empty: all tets are.
 [[nodiscard]] std::vector<BoundaryFace> boundary_faces(const TetMesh& mesh, std::span<const std::uint8_t> is_live = {});
 
-/// Per tet: bit f is set where face f (opposite corner f) is on the skin. O(M log M).
+/// Returns per tet: bit f is set where face f (opposite corner f) is on the skin. O(M log M).
 [[nodiscard]] std::vector<std::uint8_t> skin_faces(const TetMesh& mesh);
 
-/// Per tet, the tet across each of its four faces (face f is opposite corner f); none: -1. O(M log M).
+/// Returns per tet the tet across each of its four faces (face f is opposite corner f); none: -1. O(M log M).
 [[nodiscard]] std::vector<std::array<std::int32_t, 4>> face_neighbours(const TetMesh& mesh);
 
-/// The skin as a mesh that keeps all N vertices of `mesh` in their order (so vertex ids are shared).
+/// Returns the skin as a mesh that keeps all N vertices of `mesh` in their order, so vertex ids are shared.
 [[nodiscard]] TriMesh boundary_surface(const TetMesh& mesh);
 
-/// Box around all vertices. @pre at least one vertex.
+/// Box around all points, mm. @pre at least one point.
 [[nodiscard]] Box3 bounding_box(std::span<const Vec3> points);
 
-/// What is wrong with a mesh, at most one entry per kind with the first offender and the count: non-finite coordinates, indices out of
-/// range, inverted or zero-volume tets, duplicate tets, faces shared by more than two tets, unused vertices, more than one
-/// face-connected component, point or cell data of the wrong length. Empty: the mesh is sound.
+/// A problem of a mesh: non-finite coordinates, indices out of range, inverted or zero-volume tets, duplicate tets,
+/// faces shared by more than two tets, unused vertices, more than one face-connected component, point or cell data of
+/// the wrong length, or no tets.
 struct MeshProblem {
   enum class Kind {
     NonFiniteVertex, IndexOutOfRange, InvertedTet, FlatTet, DuplicateTet, NonManifoldFace, UnusedVertex,
     Disconnected, WrongDataLength, NoTets
   };
   Kind kind;
-  std::size_t first_index = 0;  ///< vertex, tet or item
-  std::size_t count = 0;
+  std::size_t first_index = 0;  ///< of the first vertex or tet affected; 0 for data
+  std::size_t count = 0;        ///< of this kind; for data, how many numbers there are
   std::string text;             ///< for a person
 };
+/// Returns at most one entry for each kind of problem (for data of the wrong length, one for points and one for cells);
+/// empty if the mesh is sound. If an index is out of range, the checks that read the tets are skipped.
 [[nodiscard]] std::vector<MeshProblem> find_problems(const TetMesh& mesh);
 
-/// A block [0, size] cut into nx x ny x nz cells of six tets each whose faces match (Kuhn), x fastest: the standard test body.
+/// Returns a block [0, size_mm] of nx x ny x nz cells, x fastest, each of six tets with matching faces (Kuhn): the
+/// standard test body. @throws InvalidArgument for a size or number of cells that is not above 0.
 [[nodiscard]] TetMesh make_block(const Vec3& size_mm, std::array<int, 3> cells);
 
 }  // namespace incise

@@ -12,7 +12,7 @@
 
 namespace incise {
 
-/// The coordinates that a path is given in.
+/// The frame of a path's coordinates.
 enum class PathFrame {
   SimRest,       ///< the undeformed mesh, mm, LPS
   SimStretched,  ///< the clamped and stretched tissue before the cut, mm, LPS
@@ -23,6 +23,7 @@ inline constexpr std::array<std::string_view, 3> kPathFrameNames{"sim_rest", "si
   return kPathFrameNames;
 }
 
+/// What the tool does along a path: cut the tissue, or only mark the line on it.
 enum class PathKind { Incise, Mark };
 inline constexpr std::array<std::string_view, 2> kPathKindNames{"incise", "mark"};
 [[nodiscard]] constexpr Names names_of(PathKind) {
@@ -42,7 +43,7 @@ inline void describe(Visitor& v, Waypoint& w) {
   v({"speed_mm_s", "Of the tip from this waypoint to the next.", "mm/s"}, w.speed_mm_s, kPositive);
 }
 
-/// The course of a tool's entry points over the surface, with depth and axis at each: what `path.json` holds.
+/// The entry points of a tool along its way over the surface, with depth and axis at each: the content of `path.json`.
 struct ToolPath {
   PathFrame frame = PathFrame::SimStretched;
   PathKind kind = PathKind::Incise;
@@ -50,7 +51,7 @@ struct ToolPath {
   std::vector<Waypoint> waypoints;
   Contour tumor_edge;                  ///< same frame; may be empty for an open cut
   std::optional<Mat4> T_robot_sim;     ///< once known; p_robot = T_robot_sim * p_sim, mm
-  std::string source_sha256;           ///< of what it was made from; empty when unknown
+  std::string source_sha256;           ///< of the path's source; empty: unknown
   std::string specimen_id = {};  ///< of the specimen that it was planned on (see io/specimen_id.hpp); empty: not stated
   bool is_virtual = false;       ///< the specimen is a synthetic body, not a patient's
 };
@@ -66,13 +67,15 @@ inline void describe(Visitor& v, ToolPath& p) {
   v("is_virtual", p.is_virtual, "Whether the specimen is a synthetic body.");
 }
 
-/// The entry points as a contour.
+/// Returns the entry points as a contour, mm, in the path's frame.
 [[nodiscard]] Contour entry_contour(const ToolPath& path);
 
-/// Time to run the path once at its waypoints' speeds, s, without entry, overlap and exit.
+/// Time for the tip to follow the path once at its waypoints' speeds, s, without entry, overlap and exit.
+/// @throws InvalidArgument for a speed that is not above 0.
 [[nodiscard]] double duration_s(const ToolPath& path);
 
-/// The path without what its file says of where it comes from: two such are equal where the tool does the same.
+/// Returns the path without its provenance (source, specimen, whether virtual): two such paths are equal if the tool
+/// does the same along them.
 [[nodiscard]] ToolPath unmarked(ToolPath path);
 
 }  // namespace incise

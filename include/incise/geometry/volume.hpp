@@ -72,7 +72,7 @@ using CtVolume = Volume<std::int16_t>;
 /// 0 = background, 1 = tissue; further labels as the user states them.
 using LabelVolume = Volume<std::uint8_t>;
 
-/// Gray values of any meaning, as floats.
+/// Grey values of any meaning, as floats.
 using GrayVolume = Volume<float>;
 
 inline constexpr std::int16_t kAirHu = -1024;

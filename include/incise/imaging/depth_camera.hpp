@@ -11,8 +11,8 @@
 
 namespace incise {
 
-/// A pinhole with lens distortion (Brown and Conrady, as OpenCV and librealsense write it): x to the right, y down, z
-/// away from the camera. Pixel (u, v) has its centre at (u, v).
+/// A pinhole camera with lens distortion (Brown and Conrady, in the convention of OpenCV and librealsense). Its frame:
+/// x to the right, y down, z away from the camera. The centre of pixel (u, v) is at (u, v).
 struct CameraIntrinsics {
   int width = 0, height = 0;
   double fx = 0.0, fy = 0.0;           ///< focal lengths, pixels, > 0
@@ -20,55 +20,59 @@ struct CameraIntrinsics {
   std::array<double, 5> distortion{};  ///< k1, k2, p1, p2, k3
 };
 
-/// The direction through a pixel, z = 1; distortion is undone. @throws InvalidArgument where that cannot be done.
+/// Returns the direction of the ray through a pixel, scaled to z = 1, in the camera's frame, without distortion.
+/// @throws InvalidArgument if the distortion cannot be inverted there.
 [[nodiscard]] Vec3 ray_through(const CameraIntrinsics& camera, const Vec2& pixel);
-/// The pixel that shows a point in front of the camera. @pre p.z() > 0
+/// Returns the pixel, distortion included, that shows point `p` (mm, camera frame). @throws InvalidArgument unless
+/// p.z() > 0.
 [[nodiscard]] Vec2 pixel_of(const CameraIntrinsics& camera, const Vec3& p);
 
-/// A colour camera and a depth camera, fixed to each other.
+/// A colour camera and a depth camera, rigidly mounted to each other.
 struct DepthCamera {
   CameraIntrinsics color;
   CameraIntrinsics depth;
-  double depth_unit_mm = 0.1;             ///< mm for one count
+  double depth_unit_mm = 0.1;             ///< mm per count of the depth picture, > 0
   Mat4 T_color_depth = Mat4::Identity();  ///< p_color = T_color_depth * p_depth; rigid, mm
 };
 
 /// One point for each pixel of a colour picture, mm, in the colour camera's frame.
 struct OrganizedCloud {
   int width = 0, height = 0;
-  Points points;                          ///< width * height; (0, 0, 0) where nothing was measured
-  std::vector<std::uint8_t> is_measured;  ///< width * height
+  Points points;                          ///< width * height, by rows; (0, 0, 0) where nothing was measured
+  std::vector<std::uint8_t> is_measured;  ///< width * height; 1 where measured
   [[nodiscard]] std::size_t index(int u, int v) const {
     return static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u);
   }
-  [[nodiscard]] std::size_t measured() const;
+  [[nodiscard]] std::size_t measured() const;  ///< number of measured points
 };
 
-/// Lays a depth picture onto the colour picture: every count becomes a point and lands on the pixel that sees it, the
-/// nearest point where several do. @throws InvalidArgument for sizes that differ from the intrinsics or values out of
-/// range.
+/// Maps a depth picture onto the colour picture: each count above 0 becomes a point at the colour pixel that sees it.
+/// If several points fall on one pixel, the nearest is kept.
+/// @throws InvalidArgument if sizes differ from the intrinsics or values are out of range.
 [[nodiscard]] OrganizedCloud cloud_seen_in_color(const DepthPicture& depth, const DepthCamera& camera);
 
-/// Refuses a cloud that is not in the frame of the camera whose picture it fills: x to the right, y down, z away from
-/// it.
-/// @throws DataError for a point behind the camera, or columns and rows that run as in a mirror.
+/// Checks that a cloud is in the frame of its own camera: x to the right, y down, z away from the camera.
+/// @throws DataError if a point lies behind the camera, or if columns and rows are mirrored.
 void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::path& name);
 
 struct LiftSettings {
-  int window_px = 4;         ///< half the window over which positions are averaged by a fitted plane, >= 1
-  double max_hole_mm = 2.0;  ///< longest stretch without depth that is interpolated, >= 0
+  int window_px = 4;         ///< half width of the window in which a plane is fitted to the positions, >= 1
+  double max_hole_mm = 2.0;  ///< longest hole in the depth that is interpolated, >= 0
 };
-/// A line of a picture in space.
+/// A line of a picture, lifted into space.
 struct LiftedLine {
-  Contour contour;  ///< mm, in the cloud's frame; order of the pixels
-  std::size_t bridged_points = 0;
-  double max_hole_mm = 0.0;  ///< longest stretch interpolated
+  Contour contour;                 ///< mm, in the cloud's frame, one point per pixel, in order
+  std::size_t bridged_points = 0;  ///< interpolated points
+  double max_hole_mm = 0.0;        ///< longest interpolated hole
 };
-/// Position at a place between pixels: a plane in (u, v), fitted to the measured points around whose depth agrees with
-/// their median (within 3 robust deviations and 0.2 mm); nullopt where fewer than 40 % of the window, or only one side
-/// of it, are measured.
+/// Returns the position (mm, cloud frame) at a sub-pixel place: the value there of a plane in (u, v), fitted to the
+/// measured points in the window whose depth differs from the median by at most 3 robust deviations + 0.2 mm. Returns
+/// nullopt if less than 40 % of the window is measured (30 % without outliers), or only one side of it.
+/// @throws InvalidArgument if window_px < 1.
 [[nodiscard]] std::optional<Vec3> position_at(const OrganizedCloud& cloud, const Vec2& pixel, int window_px);
-/// Lifts a line. @throws DataError naming the size of a hole in the depth that is larger than allowed, and its pixel.
+/// Lifts a line of at least 2 pixels into space; interpolates linearly across holes in the depth.
+/// @param name  file name for messages.
+/// @throws DataError, with size and pixel, if a hole is larger than allowed or lies at an end of an open line.
 [[nodiscard]] LiftedLine lift_to_space(const std::vector<Vec2>& points_px, bool is_closed, const OrganizedCloud& cloud,
                                        const LiftSettings& settings, const std::filesystem::path& name);
 

@@ -14,7 +14,7 @@
 
 namespace incise {
 
-/// What the synthetic CT shows and how the virtual scanner sees it.
+/// Specimen, tumour and virtual scanner of a synthetic CT.
 struct PhantomSettings {
   std::uint64_t seed = 1;
   TongueShapeSettings shape;
@@ -54,36 +54,37 @@ inline void describe(Visitor& v, PhantomSettings& s) {
   v("tumor_points", s.tumor_points, "Of the edge.", {24.0, 1000.0});
 }
 
-/// Every violation; empty: valid.
+/// Returns every violation; empty if the settings are valid.
 [[nodiscard]] std::vector<Problem> validate(const PhantomSettings& settings);
 
-/// A specimen's CT together with everything that is true about it. mm, LPS; tip anterior (-y), back of the tongue up
-/// (+z).
+/// A virtual specimen's CT and its truth. mm, LPS; tip anterior (-y), back of the tongue up (+z).
 struct Phantom {
   CtVolume ct;                          ///< HU, limited to a 12-bit scanner's range [-1024, 3071]
-  TongueShape shape;                    ///< exact
+  TongueShape shape;                    ///< exact shape
   double true_volume_mm3 = 0.0;         ///< of the shape, by quadrature
-  Contour tumor_edge;                   ///< closed, on the back's rest surface, counter-clockwise seen from above (+z)
+  Contour tumor_edge;                   ///< closed, on the back at rest, counter-clockwise seen from above (+z)
   TriMesh tumor;                        ///< closed surface of the tumour: the back inside the edge and a bowl beneath
   Vec3 tumor_center_mm = Vec3::Zero();  ///< on the surface
-  double tissue_below_tumor_mm = 0.0;   ///< thickness at the tumour's centre
+  double tissue_below_tumor_mm = 0.0;   ///< thickness of the tissue, tumour included, at the tumour's centre
   double tip_end_mm = 0.0;              ///< y of the tip
   double posterior_end_mm = 0.0;        ///< y of the root
   double platform_z_mm = 0.0;           ///< z of the plane on which the underside rests
-  Vec3 seed_mm = Vec3::Zero();          ///< a point well inside the tissue, for a segmentation that wants one
-  Box3 bounds_mm;                       ///< around the tissue
+  Vec3 seed_mm = Vec3::Zero();          ///< a point well inside the tissue, to seed a segmentation
+  Box3 bounds_mm;                       ///< contains the tissue
 };
 
-/// A tongue-like specimen on a plastic board, as a CT scanner would show it: exact shape -> partial volume (exact along
-/// z, 5 x 5 columns a voxel) -> HU of air, board and textured muscle -> point spread -> correlated noise -> whole HU.
-/// The same settings give the same bits. The shape and the tumour depend on seed and shape settings only, not on the
-/// scanner's. The default board touches the underside at about -100 HU (low-density polyethylene), so that a window
-/// from -20 HU up leaves it out.
-/// @throws CaseError listing every violation of `settings`.  @throws Cancelled if the monitor asks to stop.
+/// Makes a tongue-like specimen on a plastic board and its CT: exact shape -> partial volume (exact along z, 5 x 5
+/// columns per voxel) -> HU of air, board and textured muscle -> point spread -> correlated noise -> whole HU.
+/// The same settings give the same bits. Shape and tumour depend only on the seed and their own settings, not on the
+/// scanner's. The default board touches the underside and has about -100 HU (low-density polyethylene); a window from
+/// -20 HU upwards excludes it.
+/// @throws CaseError listing every violation of `settings`; InvalidArgument if the tumour does not fit on the back;
+/// Cancelled on request.
 [[nodiscard]] Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor);
 
-/// The CT of a given shape, as make_phantom() makes it; of `settings` those of the scanner and the texture count.
-/// @throws CaseError listing every violation of `settings`.  @throws Cancelled if the monitor asks to stop.
+/// Returns the CT of a given shape, made as in make_phantom(). Of the settings, uses only the seed and those of
+/// scanner, board and texture. Texture and noise differ from those of make_phantom() with the same seed.
+/// @throws CaseError listing every violation of `settings`; Cancelled on request.
 [[nodiscard]] CtVolume scan_shape(const TongueShape& shape, const PhantomSettings& settings, Monitor& monitor);
 
 }  // namespace incise

@@ -7,27 +7,30 @@
 
 namespace incise {
 
-/// Hounsfield units say what they mean: air is -1000.
+/// HU of air, by the definition of the Hounsfield scale.
 inline constexpr double kAirHounsfield = -1000.0;
-/// Farthest that the peak of air may lie from there, HU. Scanners that stop at -1024 lie 24 off; partial volume and scatter add some.
+/// Largest accepted distance of the air peak from kAirHounsfield, HU. A scanner that clips at -1024 is 24 off; partial
+/// volume and scatter add to this.
 inline constexpr double kAirPeakTolerance = 60.0;
-/// Farthest that a slice may lie from its neighbours in the median over its pixels, HU. In real scans it is below 10.
+/// Largest accepted median difference of a slice from its neighbours, HU. In real scans it is below 10.
 inline constexpr double kSliceStepTolerance = 30.0;
 
-/// Where the air in a scan has its peak, HU; nothing in a scan that shows hardly any (fewer than 0.2 % of the voxels). Voxels that were set
-/// to -1024 as padding count only where there is no other air. O(voxels).
+/// Returns the most frequent value of air in a scan, HU (middle of a bin of 10 HU), or nullopt if less than 0.2 % of
+/// the voxels are air, [-1500, -400) HU. Voxels of exactly -1024 may be padding: they count only if there is too little
+/// other air. O(voxels).
 [[nodiscard]] std::optional<double> air_peak_hu(const CtVolume& ct);
 
-/// The slice (along k, the first and the last excepted) that lies farthest to one side of both its neighbours, in the median over pixels.
+/// The slice (along k, not the first or last) whose values differ most from both neighbours in the same direction.
 struct OddSlice {
   int slice = 0;
-  double step_hu = 0.0;
+  double step_hu = 0.0;  ///< median over the pixels, against the neighbour that differs less; signed; 0: none
 };
-/// @pre at least 3 slices. O(voxels), at most some 10 000 pixels a slice.
+/// Finds the oddest slice, from fewer than 20 000 pixels of each. @throws InvalidArgument for fewer than 3 slices.
 [[nodiscard]] OddSlice oddest_slice(const CtVolume& ct);
 
-/// Cautions `scan` of a CT whose numbers argue against being Hounsfield units throughout: air that is not at -1000 (an offset of all
-/// values), and a slice that steps out of line (an intercept of its own).
+/// Returns a verdict with a caution `scan` for each sign that a CT's values are not Hounsfield units throughout: air
+/// that is not near -1000 (all values have an offset), or a slice that differs from its neighbours (it has its own
+/// intercept).
 [[nodiscard]] Verdict check_scan(const CtVolume& ct);
 
 }  // namespace incise

@@ -17,8 +17,8 @@
 
 namespace incise {
 
-/// A stroke of a brush over a scan: the voxels whose centres lie within `radius_mm` of its path are tissue, or are not,
-/// whatever their value is. LPS world coordinates, so a stroke depends on no grid.
+/// A stroke of a brush over a scan: adds the voxels whose centres lie within `radius_mm` of its path to the tissue, or
+/// removes them, whatever their value. LPS world coordinates, so a stroke does not depend on a grid.
 struct TissueEdit {
   bool is_tissue = true;
   double radius_mm = 1.0;
@@ -30,30 +30,31 @@ inline void describe(Visitor& v, TissueEdit& e) {
   v({"path_mm", "Points (LPS) of the stroke's middle.", "mm"}, e.path_mm);
 }
 
-/// Which part of a CT, or of a label volume, is the specimen. Lengths mm, LPS world coordinates. Labels need no window.
+/// Which part of a CT, or of a label volume, is the specimen. Lengths in mm, LPS world coordinates. Labels do not use
+/// the window.
 struct SegmentationSettings {
-  double window_low_hu = -20.0;    ///< the tissue's least HU (inclusive)
-  double window_high_hu = 180.0;   ///< and greatest (inclusive)
-  std::optional<Box3> roi_box_mm;  ///< voxel centres outside are not tissue; none: the whole volume
-  Points seeds_mm;                 ///< points inside the specimen, all in one piece; empty: the largest piece
+  double window_low_hu = -20.0;    ///< least HU of tissue (inclusive)
+  double window_high_hu = 180.0;   ///< greatest HU of tissue (inclusive)
+  std::optional<Box3> roi_box_mm;  ///< voxels with centres outside are not tissue; absent: the whole volume
+  Points seeds_mm;                 ///< points inside the specimen, all in one piece; empty: take the largest piece
   double opening_radius_mm =
       0.0;                    ///< pieces joined only by bridges thinner than twice this are separated; 0: none; [0, 20]
   bool fill_holes = true;     ///< cavities without a way out through voxel faces become tissue, whatever their HU
-  std::optional<double> smoothing_mm;  ///< length over which the occupancy is smoothed; 0: none; [0, 5]; absent: see smoothing_length_mm
+  std::optional<double> smoothing_mm;  ///< smoothing of the occupancy, [0, 5]; 0: none; absent: see smoothing_length_mm
   std::optional<std::vector<std::int32_t>> label_values;  ///< labels that are tissue; absent: all but 0
-  std::optional<std::vector<TissueEdit>> edits;  ///< of what the window finds, in their order; before pieces are chosen
-  int margin_voxels = 4;      ///< of air around the body, also where the region of interest cuts through it; [3, 50]
+  std::optional<std::vector<TissueEdit>> edits;  ///< applied in order, after the window and before a piece is chosen
+  int margin_voxels = 4;      ///< air around the body, also where the region of interest cuts through it; [3, 50]
 };
 void describe(Visitor& v, SegmentationSettings& s);
 
-/// Every violation; empty: valid.
+/// Returns every violation; empty if the settings are valid.
 [[nodiscard]] std::vector<Problem> validate(const SegmentationSettings& settings);
 
-/// What the occupancy is smoothed over: as the settings say, else 0.6 mm, or 1.2 of the longest side of a voxel where that is less: the
-/// finer the scan, the smaller what it shows.
+/// Returns the standard deviation, mm, of the smoothing of the occupancy: `settings.smoothing_mm` or, if absent, the
+/// lesser of 0.6 mm and 1.2 times the longest side of a voxel, because a finer scan shows smaller detail.
 [[nodiscard]] double smoothing_length_mm(const SegmentationSettings& settings, const Vec3& spacing_mm);
 
-/// The sides of the region of interest (or of the volume) that cut through the body, in this order.
+/// The six sides of the region of interest (or of the volume), in the order -x, +x, -y, +y, -z, +z (LPS).
 enum class RegionFace { Right, Left, Anterior, Posterior, Inferior, Superior };
 inline constexpr std::array<std::string_view, 6> kRegionFaceNames{"right",     "left",     "anterior",
                                                                   "posterior", "inferior", "superior"};
@@ -61,37 +62,37 @@ inline constexpr std::array<std::string_view, 6> kRegionFaceNames{"right",     "
   return kRegionFaceNames;
 }
 
-/// A labelled voxel at a face of the body that is not the specimen's own: the region of interest, or the end of the
-/// volume, has made it by cutting through tissue, or a stroke of the brush has.
+/// A labelled voxel with an artificial side: there the region of interest, or the end of the volume, cuts through the
+/// tissue, or a stroke of the brush made the surface.
 struct MadeVoxel {
-  std::int32_t voxel = 0;  ///< its place in the labels' array
-  std::int32_t side = 0;   ///< of the voxel that was made, along the grid: 0 to 5 are -i, +i, -j, +j, -k, +k
+  std::int32_t voxel = 0;  ///< its offset in the labels' array
+  std::int32_t side = 0;   ///< the artificial side, along the grid: 0 to 5 are -i, +i, -j, +j, -k, +k
 };
 inline void describe(Visitor& v, MadeVoxel& c) {
   v("voxel", c.voxel, "Its place in the labels' array.");
   v("side", c.side, "Of the voxel that was made: 0 to 5 are -i, +i, -j, +j, -k, +k.");
 }
 
-/// The specimen found in a CT. Both volumes share one grid: the body's box and a margin of air. It may reach beyond the
-/// CT's own grid.
+/// The specimen found in a CT. Both volumes share one grid, the body's box with a margin of air, which may extend
+/// beyond the CT.
 struct Segmentation {
   LabelVolume labels;    ///< 1 where the occupancy is at least 0.5
-  GrayVolume occupancy;  ///< share of each voxel that is tissue, [0, 1], smooth; its 0.5 iso-surface is the body's skin
+  GrayVolume occupancy;  ///< fraction of each voxel that is tissue, [0, 1], smooth; its 0.5 iso-surface is the skin
 
-  std::size_t voxels = 0;             ///< labelled
+  std::size_t voxels = 0;             ///< labelled voxels
   double volume_mm3 = 0.0;            ///< of the labelled voxels
   double occupancy_volume_mm3 = 0.0;  ///< inside the 0.5 iso-surface of the trilinear occupancy: what a mesher sees
-  std::optional<double> tissue_hu;    ///< median over the labelled voxels that lie in the window; absent: from labels
-  std::size_t components = 0;    ///< separate pieces in the window (after the opening's erosion), before one was chosen
-  std::size_t holes_filled = 0;  ///< cavities
-  std::size_t hole_voxels = 0;   ///< and their voxels
-  /// Body voxels at each RegionFace beyond which tissue goes on: > 0 where the region or the volume cuts through it
+  std::optional<double> tissue_hu;    ///< median over the labelled voxels in the window; absent: from labels
+  std::size_t components = 0;         ///< separate pieces after the opening's erosion, before one is chosen
+  std::size_t holes_filled = 0;       ///< filled cavities
+  std::size_t hole_voxels = 0;        ///< voxels of these cavities
+  /// For each RegionFace: body voxels where the tissue continues beyond it, so that the region or the volume cuts it.
   std::array<std::size_t, 6> cut_voxels{};
-  std::vector<MadeVoxel> cut;           ///< where the label begins beneath these, once for each side
-  std::vector<MadeVoxel> painted;       ///< where it begins beneath a side that the edits made
-  double smoothing_mm = 0.0;            ///< that was taken
-  Verdict verdict;                      ///< what argues against this tissue: check_scan, and a body that the region cuts off
-  [[nodiscard]] int cut_faces() const;  ///< how many of the six cut through tissue
+  std::vector<MadeVoxel> cut;           ///< labelled voxels at these cuts, once for each side
+  std::vector<MadeVoxel> painted;       ///< labelled voxels at a side that the edits made
+  double smoothing_mm = 0.0;            ///< smoothing used, see smoothing_length_mm
+  Verdict verdict;                      ///< reasons to doubt this tissue, see `segment`
+  [[nodiscard]] int cut_faces() const;  ///< number of RegionFaces that cut through tissue
 };
 inline void describe(Visitor& v, Segmentation& s) {
   v.bulk("labels", s.labels, "1: tissue.");
@@ -112,35 +113,36 @@ inline void describe(Visitor& v, Segmentation& s) {
   v("verdict", s.verdict, "On this tissue.");
 }
 
-/// Which values of a label volume are tissue: every one but 0, or those of `label_values`.
+/// Returns, for each value of a label volume, whether it is tissue: `label_values` or, if absent, every value but 0.
 [[nodiscard]] std::array<bool, 256> tissue_labels(const SegmentationSettings& settings);
 
-/// CT -> one clean tissue label and its sub-voxel occupancy.
-/// Steps: window and region -> edits by hand -> pieces (face-connected; separated by erosion with a ball, grown back
-/// within the window)
-/// -> the seed's or the largest piece -> 3D hole filling -> occupancy from the CT's own gray values -> smoothing ->
-/// label where >= 0.5. The occupancy of a voxel within two voxels of the body's border is (HU - outside)/(inside -
-/// outside), limited to [0, 1], where inside and outside are means of the pure tissue and the pure surroundings near by
-/// (air, fat, plastic or bone alike); where the region or the opening cuts through tissue it is 0 or 1. Smoothing
-/// convolves with 2 G - G * G, G a Gaussian of standard deviation `smoothing_length_mm`: it averages noise and steps as
-/// G does and moves a skin of mean curvature H inwards by 0.45 smoothing² H, less than half as far as G. Its verdict
-/// has a caution `scan` when the body touches the region's sides (a leak, or tissue cut on purpose), when without a
-/// seed another piece is at least a quarter as large as the one that is kept, and those of check_scan.
-/// @param of_scan  what check_scan says of the CT, for one that is segmented again and again; absent: it is asked.
-/// @throws CaseError: settings invalid (all violations listed), region or a seed outside the volume, a seed outside the
-/// window or the region
-///         or in a part that the opening removes, seeds in separate pieces, nothing in the window, smoothing that
-///         leaves nothing.
-/// @throws InvalidArgument: a volume without voxels, of the wrong length, or with a non-finite or non-positive grid.
-/// @throws Cancelled.
+/// Finds the specimen in a CT: one clean tissue label and its sub-voxel occupancy.
+/// Steps: window and region -> edits by hand -> pieces (face-connected; separated by erosion with a ball, then grown
+/// back) -> the seed's or the largest piece -> 3D hole filling -> occupancy from the CT's own gray values -> smoothing
+/// -> label where >= 0.5.
+/// Within 2.3 voxels of the body's border, the occupancy is (HU - outside)/(inside - outside), limited to [0, 1]. Here
+/// inside and outside are local means of pure tissue and of pure surroundings (air, fat, plastic or bone alike). Where
+/// the region or the opening cuts through tissue, the occupancy is 0 or 1. Smoothing convolves with 2 G - G * G, G a
+/// Gaussian of standard deviation smoothing_length_mm(). It averages noise and steps as G does, and moves a skin of
+/// mean curvature H inwards by 0.45 smoothing² H, less than half as far as G.
+/// The verdict has a caution `scan` if the region or the end of the volume cuts through the body (a leak, or tissue cut
+/// on purpose); if, without a seed, another piece is at least a quarter as large as the chosen one; if smoothing
+/// changes the volume by more than 2 %; and for each caution of check_scan.
+/// @param of_scan  result of check_scan(ct), to save time if the CT is segmented repeatedly; absent: computed here.
+/// @throws CaseError for invalid settings (all violations listed), a region or a seed outside the volume, a seed
+/// outside the window or the region or in a part that the opening removes, seeds in separate pieces, nothing in the
+/// window, or smoothing that leaves nothing.
+/// @throws InvalidArgument for a volume without voxels or of the wrong length, or a grid that is not finite, positive
+/// and orthonormal.
+/// @throws Cancelled on request.
 /// @note O(voxels of the region); about a second for 150 x 160 x 100 on one thread. Same bits at any thread count.
 [[nodiscard]] Segmentation segment(const CtVolume& ct, const SegmentationSettings& settings, Workers& workers,
                                    Monitor& monitor, const std::optional<Verdict>& of_scan = {});
 
-/// The same from labels that somebody drew: every label but 0 is tissue, or those of `label_values`. The occupancy is 0
-/// or 1 before it is smoothed, so the skin is as accurate as the voxels are small. The window is not used, and the
-/// verdict says nothing of HU.
-/// @throws as `segment`; CaseError where no voxel of the region has a label, or a seed lies where the label is 0.
+/// Finds the specimen in a label volume; see `segment` and tissue_labels(). The occupancy is 0 or 1 before smoothing,
+/// so the voxel size limits the accuracy of the skin. The window is not used, and the HU are not checked.
+/// @throws as `segment`, but names only the first violation of the settings; also CaseError if no voxel of the region
+/// is tissue, or a seed lies where none is.
 [[nodiscard]] Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings,
                                           Workers& workers, Monitor& monitor);
 

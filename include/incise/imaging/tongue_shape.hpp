@@ -12,7 +12,7 @@
 
 namespace incise {
 
-/// Mean size of a tongue-like specimen and how much one differs from the next. mm.
+/// Mean size of tongue-like specimens, mm, and how much they vary.
 struct TongueShapeSettings {
   double length_mm = 110.0;
   double width_mm = 55.0;
@@ -39,12 +39,12 @@ struct SurfaceWave {
   double phase = 0.0;
 };
 
-/// A closed, smooth tongue lying on the plane z = 0, known exactly: over each point (x, y) of its outline the tissue is
-/// one interval of z. Axes as in a patient on the back (LPS): the tip at y = -length/2 (anterior), the root at
-/// +length/2, the back up (+z). Over the distance s in [0, 1] from tip to root the half width a, the upper height h and
-/// the lower depth d rise from 0 and fall to 0 as the root of the distance does, so that both ends are round; with u =
-/// (x - mid-line)/a in [-1, 1] the upper side is z = c + h (1 - |u|^p)^(1/q), superelliptic, and the lower side
-/// likewise, cut flat by the platform with a rounded edge.
+/// A closed, smooth tongue on the plane z = 0, known exactly: over each point (x, y) inside its outline, the tissue is
+/// one interval of z. LPS: the tip at y = -length/2 (anterior), the root at +length/2, the back up (+z). The share s in
+/// [0, 1] of the length runs from tip to root. Half width a, upper height h and lower depth d start and end at 0 as the
+/// square root of the distance from the end, so both ends are round. With u = (x - mid-line)/a in [-1, 1], the upper
+/// side is the superellipse z = c + h (1 - |u|^p)^(1/q). The lower side is one too, cut flat by the platform with a
+/// rounded edge.
 ///
 ///            ________----------________
 ///      ___---                          \      z
@@ -56,34 +56,35 @@ struct TongueShape {
   double width_mm = 55.0;
   double height_mm = 35.0;
   double waist_mm = 9.0;        ///< c: height of the widest outline above the platform
-  double back_taper = 0.7;      ///< s at which the back has reached its full height
-  double outline_taper = 0.55;  ///< s at which the outline has reached its full width
+  double back_taper = 0.7;      ///< s at which the back reaches its full height
+  double outline_taper = 0.55;  ///< s at which the outline reaches its full width
   double bend_mm = 0.0;         ///< sideways bow of the mid-line, signed
   double asymmetry = 0.0;       ///< left half width = a (1 + asymmetry), right = a (1 - asymmetry)
   std::array<SurfaceWave, 6> relief{};
 };
 
-/// A specimen drawn at random; the same state of `random`, the same shape.
+/// Draws a random shape; the same state of `random` gives the same shape. @throws InvalidArgument listing every
+/// violation of `settings`.
 [[nodiscard]] TongueShape draw_tongue_shape(const TongueShapeSettings& settings, Random& random);
 
-/// The tissue over one point of the platform: z from low to high, mm.
+/// The interval of z, mm, that the tissue occupies over one point of the platform.
 struct TissueSpan {
   double low_mm = 0.0;
   double high_mm = 0.0;
 };
 
-/// The tissue over (x, y), mm; nullopt outside the outline.
+/// Returns the tissue over (x, y); nullopt outside the outline.
 [[nodiscard]] std::optional<TissueSpan> span_at(const TongueShape& shape, double x_mm, double y_mm);
 
-/// x of the mid-line at y, mm.
+/// Returns x of the mid-line at y, mm.
 [[nodiscard]] double midline_x_mm(const TongueShape& shape, double y_mm);
 
-/// Volume, mm³, by midpoint quadrature in variables that take the roots out of the ends: relative error below 1e-5 with
-/// the default.
-/// @param steps  points along the length, and across each half; [16, 4096].
+/// Returns the volume, mm³, by midpoint quadrature in variables that remove the square roots at the ends. Relative
+/// error below 1e-5 with the default.
+/// @param steps  points along the length, and across each half; [16, 4096], else @throws InvalidArgument.
 [[nodiscard]] double volume_mm3(const TongueShape& shape, int steps = 200);
 
-/// A box that holds the shape, mm.
+/// Returns a box, mm, that contains the shape; not necessarily the smallest.
 [[nodiscard]] Box3 bounds_mm(const TongueShape& shape);
 
 }  // namespace incise

@@ -4,10 +4,11 @@
 
 namespace incise {
 
-/// Removes from `folder` what writers that were killed left there: files and folders under the temporary names of
-/// write_atomically and AtomicFolder. What belongs to another process that still runs on this machine stays; this
-/// process's own names are taken for those of an earlier one with its number, so it is to be called before anything is
-/// written there. What cannot be removed stays as well.
+/// Removes from `folder` the temporary files and folders that killed calls of write_atomically and AtomicFolder left
+/// there. An older folder that a killed AtomicFolder had moved aside gets its name back if nothing replaced it.
+/// Skips names that are still locked, names of other processes that still run on this machine, and whatever it cannot
+/// remove. Names with this process's number are taken for those of an earlier process, so call it before writing
+/// anything into `folder`.
 void remove_abandoned_temporaries(const std::filesystem::path& folder);
 
 }  // namespace incise

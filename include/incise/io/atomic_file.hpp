@@ -11,38 +11,40 @@ namespace incise {
 
 class HeldTemporary;
 
-/// Writes a file all or nothing: `write` fills a stream to a temporary name beside `path`, which then takes the place
-/// of `path`. Binary mode; no folder is made. Whatever an exception of `write` says reaches the caller, after the
-/// temporary file is gone. The file and its name are on the disk when it returns (fsync), but in a folder that AtomicFolder
-/// fills, which gets there as a whole. A temporary file that a killed process left for this very name is removed.
-/// @throws DataError if the folder is missing, or the file cannot be written completely; an older file then stays as it
-/// was.
+/// Writes a file all or nothing: `write` fills a temporary file beside `path` (binary mode), which then replaces
+/// `path`. If `path` is a link, replaces the file that it points to. Makes no folder. When the call returns, the file
+/// and its name are on the disk (fsync), except inside an unfinished AtomicFolder, whose commit syncs everything.
+/// Removes temporary files that killed processes left for the same name.
+/// @throws DataError if the folder is missing or the file cannot be written completely. Exceptions of `write` reach
+///         the caller. In both cases the temporary file is removed and an older file stays unchanged, unless only the
+///         final sync of the folder fails.
 void write_atomically(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
-/// As above, of a content that is there already.
+/// Writes `content` in the same way.
 void write_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// Looks before a long computation whether write_atomically may write a file of this name. @throws DataError as it would.
+/// Checks, before a long computation, that `path` is a name that write_atomically accepts: its folder exists, and it is
+/// no folder, device or pipe. Does not check permissions. @throws DataError otherwise.
 void require_writable(const std::filesystem::path& path);
 
-/// The whole content of a file, byte for byte.
-/// @throws DataError if it is missing, is a folder, or cannot be read.
+/// Returns the whole content of a file, byte for byte.
+/// @throws DataError if it is missing, no regular file, larger than kLargestInputBytes, or unreadable.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// Refuses a folder that results must not replace: one that holds any file that its manifest.json does not list as
-/// written with it, whose manifest.json is not of incise, or to which the name is a link. A folder that is missing or empty
-/// passes. What a killed process left of this folder is put right first.
-/// @throws DataError naming the first such file
+/// Checks that results may replace `folder`: it is missing or empty, or every file in it is listed in the
+/// manifest.json that incise wrote there. First tidies up after killed processes that were writing this folder.
+/// @throws DataError if the name is a link, if manifest.json is missing, from another program or without a list of
+///         files, or for the first file that it does not list.
 void require_replaceable(const std::filesystem::path& folder);
 
-/// Removes a result folder, if there is one. @throws DataError as require_replaceable, or where it cannot be removed.
+/// Removes a result folder if it exists. @throws DataError as require_replaceable, or if it cannot be removed.
 void remove_replaceable(const std::filesystem::path& folder);
 
 /// A folder that appears all or nothing: fill `path()`, then `commit()`.
-/// Without commit the destructor removes what was written and an older folder of that name stays as it was.
+/// Without commit, the destructor removes everything written, and an older folder of that name stays unchanged.
 class AtomicFolder {
  public:
   /// Makes an empty folder with a temporary name beside `target`. @throws DataError if the parent folder is missing or
-  /// read-only, or as require_replaceable.
+  /// read-only, if `target` is a file, or as require_replaceable.
   explicit AtomicFolder(std::filesystem::path target);
   ~AtomicFolder();
   AtomicFolder(const AtomicFolder&) = delete;
@@ -51,10 +53,13 @@ class AtomicFolder {
   /// Where to write until commit.
   [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
 
-  /// Brings the folder to the disk and renames it to its target; an older result there changes places with it in one step and
-  /// is then removed. Killed at any moment, this leaves the older or the new one whole, at the latest when incise next
-  /// writes there. Where there is a manifest.json, it first gets the key `files`: every file of the folder, relative and sorted.
-  /// @throws DataError if that cannot be done or as require_replaceable; then the older folder stays. @pre called once.
+  /// Syncs the folder to the disk and renames it to its target. An older result there is swapped out and removed.
+  /// If the process is killed at any moment, either the older or the new folder is whole, at the latest when incise
+  /// next writes there. If the folder has a manifest.json, commit first adds the key `files` to it: the relative paths
+  /// of all files in the folder, sorted.
+  /// @pre called once (InvalidArgument).
+  /// @throws DataError if the folder cannot be put in place, or as require_replaceable; the older folder then stays.
+  ///         Also if only the final sync fails; the new folder is then in place.
   void commit();
 
  private:

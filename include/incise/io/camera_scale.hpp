@@ -7,17 +7,18 @@
 
 namespace incise {
 
-/// Between these a camera's scale is taken out of its cloud; one beyond them is a mistake.
+/// Range of a camera's scale: size in the camera's cloud divided by true size. A scale outside it is an error.
 inline constexpr double kLeastCameraScale = 0.9;
 inline constexpr double kMostCameraScale = 1.1;
 
-/// As write_ply, for a cloud that a camera saw `camera_scale` times too large and that was brought to its true size
-/// since: a comment `incise.camera_scale` keeps the number, so that whoever judges the scale of what follows knows of
-/// it.
+/// Writes a `.ply` as write_ply does, for a cloud that a camera saw `camera_scale` times too large and that has been
+/// brought to its true size. The number is stored in the comment `incise.camera_scale`, for later checks of scale.
+/// @param camera_scale  in [kLeastCameraScale, kMostCameraScale]  @throws InvalidArgument otherwise; or as write_ply.
 void write_ply_at_true_size(const std::filesystem::path& path, const TriMesh& cloud, double camera_scale,
                             std::string_view specimen_id = {});
 
-/// That number; 1 for any other file. @throws DataError for a comment that holds no scale between the limits.
+/// Returns the scale in the comment `incise.camera_scale` of a `.ply`; 1 if the file has none or is of another format.
+/// @throws DataError if the comment holds no number in range, or if the `.ply` cannot be read.
 [[nodiscard]] double camera_scale_of(const std::filesystem::path& path);
 
 }  // namespace incise

@@ -5,13 +5,13 @@
 
 namespace incise {
 
-/// A text file that became part of the program when it was built (incise_embed in cmake/InciseTargets.cmake).
+/// A text file that the build embeds in the program (incise_embed in cmake/InciseTargets.cmake).
 struct EmbeddedFile {
   std::string_view name;     ///< "index.html", "lib/three.core.js"
   std::string_view content;  ///< UTF-8
 };
 
-/// The file of that name; null: there is none. O(files).
+/// Returns the file called `name`, or null if there is none. O(files).
 [[nodiscard]] inline const EmbeddedFile* find_embedded(std::span<const EmbeddedFile> files, std::string_view name) {
   for (const EmbeddedFile& file : files) {
     if (file.name == name) return &file;

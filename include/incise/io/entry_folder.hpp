@@ -6,11 +6,12 @@
 
 namespace incise {
 
-/// Entries of a cache as files, one each: `FOLDER/NAME.bin`. The folder may be moved or copied.
+/// Stores each entry of a cache as a file, `FOLDER/NAME.bin`. The folder may be moved or copied.
 class EntryFolder : public EntryStore {
  public:
-  /// @param folder  is made when the first entry is saved. @throws DataError where it is a link or no folder, or holds
-  /// a link, a folder or a file of another origin in place of an entry: nothing of anybody else's is replaced.
+  /// @param folder  created when the first entry is saved
+  /// @throws DataError if it is a link or no folder, or if anything in it whose name ends in `.bin` is a link, a folder
+  ///         or a file from another program: only entries of a cache may be replaced.
   explicit EntryFolder(std::filesystem::path folder);
 
   std::optional<std::string> load(const std::string& name) override;
@@ -18,7 +19,7 @@ class EntryFolder : public EntryStore {
   void remove(const std::string& name) override;
   bool holds(const std::string& name) override { return std::filesystem::exists(place_of(name)); }
 
-  /// Where an entry is or would be.
+  /// Returns the file of an entry, whether or not it exists.
   [[nodiscard]] std::filesystem::path place_of(const std::string& name) const override {
     return folder_ / (name + ".bin");
   }

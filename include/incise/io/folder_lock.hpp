@@ -4,18 +4,19 @@
 
 namespace incise {
 
-/// The right to write into a folder, held by one owner at a time: while one holds it, no other process and no other lock of this process gets it.
-/// The system gives it back when the owner ends, however it ends. No file is made: the folder itself is locked (flock).
+/// Exclusive right to write into a folder: while one lock exists, no other process and no other lock in this process
+/// can get it. The system releases it when the owner ends, however it ends. Locks the folder itself (flock); no lock
+/// file is made.
 class FolderLock {
  public:
-  /// Makes the folder where it is missing. @throws DataError naming the folder and the process that holds it; where the folder cannot be made or
-  /// opened; where its file system knows no locks.
+  /// Makes the folder if it is missing, and locks it without waiting. @throws DataError if it is locked (naming the
+  /// process), if it cannot be made or opened, or if its file system does not support locks.
   explicit FolderLock(std::filesystem::path folder);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
-  /// Gives the folder back early.
+  /// Releases the lock early.
   void release();
 
  private:

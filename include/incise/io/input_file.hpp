@@ -7,33 +7,34 @@
 
 namespace incise {
 
-/// Largest file that is read at all: well above a whole-body CT, below what would fill a laboratory's machine.
+/// Largest file that is read: well above a whole-body CT, but too small to fill the memory of a laboratory's machine.
 inline constexpr std::uint64_t kLargestInputBytes = 8ULL << 30;
-/// Largest case file: the longest sound one has some ten kilobytes.
+/// Largest case file; real ones have at most some ten kilobytes.
 inline constexpr std::uint64_t kLargestCaseBytes = 4ULL << 20;
 
-/// What lies there, in words: "a file", "a folder", "a pipe" … (links are followed). @throws DataError where there is
-/// nothing.
+/// Returns the kind of thing at `path`, in words: "a file", "a folder", "a pipe" … Follows links.
+/// @throws DataError if there is nothing.
 [[nodiscard]] std::string kind_of_file(const std::filesystem::path& path);
 
-/// Every reader looks at a file through this before it opens it: a pipe, a device or a socket may never end or never begin.
-/// @throws DataError where there is no such file, where it is a folder or anything but a regular file (links are followed), and where it is
-///         larger than `most_bytes`.
+/// Checks that `path` is a regular file of at most `most_bytes`. Every reader calls this before it opens a file,
+/// because reading a pipe, device or socket may block or never end. Follows links.
+/// @throws DataError if the file is missing, not regular, or too large.
 void require_regular_file(const std::filesystem::path& path, std::uint64_t most_bytes = kLargestInputBytes);
 
-/// The same for what may be a folder of files, too.
+/// As require_regular_file, but a folder passes too.
 void require_file_or_folder(const std::filesystem::path& path);
 
-/// Every file that reading `path` opens, in a fixed order: the file itself, and what its header names beside it (ElementDataFile of .mhd and
-/// .mha; data file or datafile of .nhdr and .nrrd, in all three forms; the .ele of a .node and the reverse). A folder: every regular file
-/// directly in it. A file that is named and not there is listed all the same. Of a header that cannot be read the file alone is listed:
-/// whoever reads it says what is wrong.
+/// Returns every file that reading `path` opens, in a fixed order. For a file: the file itself, then the data files
+/// that its header names (ElementDataFile of .mhd and .mha; `data file` or `datafile` of .nhdr and .nrrd, in all three
+/// forms; the .ele of a .node and vice versa), whether or not they exist. If the header cannot be read, only the file
+/// itself: its reader reports the error. For a folder: the regular files directly in it, sorted.
 /// @throws DataError as require_file_or_folder.
 [[nodiscard]] std::vector<std::filesystem::path> input_files(const std::filesystem::path& path);
 
-/// SHA-256 over the contents of input_files(path): of one file its own hash, else of the lines "<hash or missing>
-/// <name>\n"; of a folder that of sha256_of_folder. It changes with any byte that reading `path` would see. @throws
-/// DataError as input_files, or where a file cannot be read.
+/// Returns the SHA-256 of an input as 64 hex digits; it changes with any byte that reading `path` would see. For a
+/// folder: sha256_of_folder. For a file that opens no other: sha256_of_file. Otherwise: the hash of the lines
+/// "<hash or missing>  <name>\n" over input_files(path).
+/// @throws DataError as input_files, or if a file cannot be read.
 [[nodiscard]] std::string sha256_of_input(const std::filesystem::path& path);
 
 }  // namespace incise

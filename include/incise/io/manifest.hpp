@@ -23,7 +23,7 @@ inline void describe(Visitor& v, ManifestInput& i) {
   v("sha256", i.sha256, "Of its contents.");
 }
 
-/// All that is needed to repeat a run: `manifest.json` of an output folder.
+/// Content of `manifest.json` in an output folder: everything needed to repeat the run.
 struct Manifest {
   std::string version;               ///< of incise
   std::string commit;                ///< of the sources; "unknown" outside a repository
@@ -35,32 +35,36 @@ struct Manifest {
   std::vector<ManifestInput> inputs;
   double wall_s = 0.0;
   std::string machine;  ///< see machine_description
-  std::string specimen_id = {};  ///< whose the folder's files are (specimen_id.hpp); empty: nobody's, or several's
-  std::optional<Verdict> verdict = {};  ///< of the run that filled the folder, where it has one
+  std::string specimen_id = {};  ///< the specimen of the folder's files (specimen_id.hpp); empty: none, or several
+  std::optional<Verdict> verdict = {};  ///< of the run that filled the folder, if it has one
 };
 void describe(Visitor& v, Manifest& m);
 
-/// Writes `folder/manifest.json`, all or nothing. @pre settings_json is JSON, wall_s is finite and not negative.
+/// Writes `folder/manifest.json`, all or nothing.
+/// @pre settings_json is JSON; wall_s is finite and not negative (InvalidArgument).
 /// @throws DataError if the file cannot be written.
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest);
 
-/// Where the manifest of a result that is one file is: `FILE.manifest.json`, FILE with its ending.
+/// Returns the path of the manifest of a single-file result: `FILE.manifest.json`, where FILE includes its extension.
 [[nodiscard]] std::filesystem::path manifest_beside(const std::filesystem::path& file);
 
-/// Writes it, with the digest of the file that it belongs to (`result_sha256`). @pre the file is written
+/// Writes manifest_beside(file), with the file's SHA-256 under `result_sha256`. @pre, @throws as write_manifest; also
+/// DataError if `file` does not exist yet.
 void write_manifest_beside(const std::filesystem::path& file, const Manifest& manifest);
 
-/// Reads `folder/manifest.json`; keys that this version does not know are ignored. @throws DataError naming the place.
+/// Reads `folder/manifest.json`; ignores keys that this version does not know. @throws DataError naming the place.
 [[nodiscard]] Manifest read_manifest(const std::filesystem::path& folder);
 
-/// SHA-256 of a file's bytes (of a text: core/sha256.hpp). @throws DataError if it is missing, is a folder, or cannot be read.
+/// Returns the SHA-256 of a file's bytes, as 64 hex digits (core/sha256.hpp hashes text).
+/// @throws DataError if the file is missing, not regular, or unreadable.
 [[nodiscard]] std::string sha256_of_file(const std::filesystem::path& path);
-/// Of a folder: the hash of the lines "<sha256>  <relative/path>\n", sorted by path, over all regular files below it.
-/// So it changes with any content or name, and not with the order in which a disk lists them. @throws DataError if it
-/// is missing or unreadable.
+/// Returns the SHA-256 of a folder: the hash of the lines "<sha256>  <relative/path>\n", sorted by path, over all
+/// regular files below it. It depends on their names and contents only, not on the order in which the disk lists them.
+/// @throws DataError if the folder is missing or unreadable.
 [[nodiscard]] std::string sha256_of_folder(const std::filesystem::path& folder);
 
-/// The processor's model, logical cores and compiler in one line: "Intel(R) Xeon(R) …, 2 logical cores, g++ 12.2.0".
+/// Returns the processor's model, its logical cores and the compiler in one line:
+/// "Intel(R) Xeon(R) …, 2 logical cores, g++ 12.2.0".
 [[nodiscard]] std::string machine_description();
 
 }  // namespace incise

@@ -10,23 +10,24 @@
 
 namespace incise {
 
-/// Decodes a `.png`, `.jpg` or `.tif` held in memory. 16-bit channels are rounded to 8; a transparent pixel is laid on
-/// white; the orientation stored in a JPEG or TIFF is applied; gamma and colour profiles are not.
-/// @param bytes  the whole file.  @param name  stands for the file in messages.
-/// @throws DataError for another format, a file that is cut short or damaged, pixels that it states not to be square,
-/// grey or CMYK pictures, a picture whose channels are all equal (no colour to see), more than 200 million pixels, or
-/// more than its bytes can hold.
+/// Decodes a `.png`, `.jpg` or `.tif` held in memory. Rounds 16-bit channels to 8 bits, blends transparent pixels with
+/// white, and applies the orientation stored in a JPEG or TIFF; ignores gamma and colour profiles.
+/// @param bytes  the whole file, at most 1 GiB  @param name  names the file in messages
+/// @throws DataError for another format, a truncated or damaged file, non-square pixels (as stated in the file), grey
+///         or CMYK pictures, a picture without colour (the channels differ by at most 8 at every pixel), more than 200
+///         million pixels, or more pixels than its bytes can hold.
 [[nodiscard]] ColorPicture decode_picture(std::string_view bytes, const std::filesystem::path& name);
 
-/// Decodes a depth picture: one channel of 16 bits (`.png`, `.tif`), turned as a TIFF states. @throws DataError as
-/// decode_picture, for another depth or number of channels, and where every pixel is 0.
+/// Decodes a depth picture: one channel of 16 bits (`.png`, `.tif`); applies the orientation stored in a TIFF.
+/// @throws DataError as decode_picture, but here for any other number of channels or bits, and if every pixel is 0.
 [[nodiscard]] DepthPicture decode_depth(std::string_view bytes, const std::filesystem::path& name);
 
-/// A PNG file in memory. @pre as many pixels as width times height, both > 0.
+/// Returns the bytes of a PNG file: RGB of 8 bits, or grey of 16.
+/// @pre width * height pixels, both > 0 (InvalidArgument).
 [[nodiscard]] std::string encode_png(const ColorPicture& picture);
 [[nodiscard]] std::string encode_png(const DepthPicture& picture);
-/// Rows from the top, 8 bits a channel. @param channels  1 (grey) or 3 (RGB). @pre pixels.size() == width * height *
-/// channels.
+/// The same for pixels of 8 bits per channel, rows from the top. @param channels  1 (grey) or 3 (RGB)
+/// @pre pixels.size() == width * height * channels (InvalidArgument).
 [[nodiscard]] std::string encode_png(std::span<const std::uint8_t> pixels, int width, int height, int channels);
 
 }  // namespace incise

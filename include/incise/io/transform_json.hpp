@@ -10,17 +10,17 @@
 
 namespace incise {
 
-/// Refuses a matrix that is no similarity: another last row than 0 0 0 1, a mirror image, shear or unequal axes (to
-/// 1e-3).
-/// @throws as Visitor::refuse
+/// Checks that a 4 x 4 matrix is a similarity: last row 0 0 0 1, positive determinant, no shear and equal axes (to
+/// 1e-3, relative). @throws as Visitor::refuse.
 void require_similarity(const Visitor& v, const Field& field, const Mat4& T);
 
-/// The 4 x 4 matrix under a key of a JSON object: rows, the last one 0 0 0 1, finite, positive determinant; shifts in mm.
-/// @param file  stands for the document in messages.  @throws DataError naming key, row or number.
+/// Returns the similarity under a key of a JSON object: 4 x 4 by rows, finite, shift in mm; see require_similarity.
+/// @param file  names the document in messages  @throws DataError naming key, row or number.
 [[nodiscard]] Mat4 transform_in(const nlohmann::ordered_json& document, const std::string& key,
                                 const std::filesystem::path& file);
 
-/// The same without scale or shear: a rotation (to 1e-4) and a shift. @throws DataError
+/// The same for a rigid transform: a rotation (to 1e-4) and a shift.
+/// @throws DataError as transform_in, or if the matrix scales.
 [[nodiscard]] Mat4 rigid_transform_in(const nlohmann::ordered_json& document, const std::string& key,
                                       const std::filesystem::path& file);
 

@@ -9,9 +9,8 @@
 
 namespace incise {
 
-/// Takes values out of a JSON file that incise wrote: what `read` returns.
-/// @throws DataError naming the file where a key is missing or a value is of another kind, as in a file that was
-/// changed.
+/// Returns the result of `read`, which takes values out of a JSON file that incise wrote.
+/// @throws DataError naming the file if a key is missing or a value has another type, as in a file that was changed.
 template <class Read>
 auto from_written_json(const std::filesystem::path& file, const Read& read) {
   try {

@@ -15,26 +15,26 @@
 
 namespace incise {
 
-/// Which cuts a laboratory is accepted or refused by.
+/// The cuts by which a laboratory is accepted or refused.
 struct AcceptanceSettings {
-  std::uint64_t specimens = 24;                                 ///< their seeds count up from the run's
-  second_bench::Factors factors = second_bench::all_factors();  ///< that vary
-  std::optional<double> speed_mm_s;                             ///< of every cut; absent: as prescribed
-  std::optional<double> power_w;                                ///< likewise
-  std::vector<std::string> overrides;  ///< checks of the program that are taken on, as of ExportRequest
-  bool with_paper_pass = true;  ///< and each specimen once more along the paper's correction
-  int tets = 25000;             ///< of the planner's meshes
+  std::uint64_t specimens = 24;                                 ///< one series; their seeds count up from the run's
+  second_bench::Factors factors = second_bench::all_factors();  ///< factors that vary
+  std::optional<double> speed_mm_s;                             ///< speed of every cut; absent: as prescribed
+  std::optional<double> power_w;                                ///< power of every cut; absent: as prescribed
+  std::vector<std::string> overrides;  ///< failed checks of the program to override, see ExportRequest
+  bool with_paper_pass = true;  ///< cut each specimen also along the paper's correction
+  int tets = 25000;             ///< target number of tets of the planner's meshes
 };
 
-/// Cuts specimens of the second laboratory as planned and along the paper's single correction (its tool, its pass, each
-/// specimen's stiffness by its pull), and measures the photographs. Nothing is calibrated, and nothing but the paper's
-/// method corrects: what a laboratory yields is judged without the planner that it will judge. Finished steps are kept
-/// in each specimen's cache/ and not run again.
+/// Cuts specimens of the second laboratory as planned and along the paper's single correction (its tool, its pass, the
+/// stiffness of each specimen from its pull), and measures the photographs. Nothing is calibrated, and only the paper's
+/// method corrects. So the laboratory is judged without the planner that it will judge. Finished steps are kept in each
+/// specimen's cache/ and not run again.
 ///
 ///   S1/ …  as of an experiment;  truth/  the specimens;  acceptance.json  acceptance.csv  manifest.json  bench.json
 ///
-/// @returns what acceptance.json holds: `rows`, one a specimen, and `summary`.
-/// @throws DataError where a file cannot be written; Cancelled.
+/// @returns the content of acceptance.json: `rows`, one per specimen, and `summary`.
+/// @throws DataError for a folder with other files or another seed, or where a file cannot be written; Cancelled.
 [[nodiscard]] nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings,
                                                   const std::filesystem::path& output, const RunContext& run,
                                                   Workers& workers, Monitor& monitor);

@@ -14,7 +14,7 @@
 
 namespace incise {
 
-/// Which factors of the second laboratory are switched, and on which specimens.
+/// The factors of the second laboratory that are switched, and the specimens.
 struct ScreeningSettings {
   std::uint64_t specimens = 6;                                  ///< their seeds count up from the run's; each a series
   second_bench::Factors factors = second_bench::all_factors();  ///< at least two; the others stay off
@@ -23,14 +23,15 @@ struct ScreeningSettings {
 };
 
 /// Cuts every specimen as planned under a two-level fractional factorial design of the factors (see
-/// FractionalFactorial), and says from the photographs what each factor, and pairs of them, do to the error. Nothing is
-/// calibrated or corrected. Finished steps are kept in each cut's cache/ and not run again.
+/// FractionalFactorial) and estimates, from the photographs, the effect of each factor and of pairs of them on the
+/// error. Nothing is calibrated or corrected. Finished steps are kept in each cut's cache/ and not run again.
 ///
-///   S1/0000/ …  the first specimen's cut without any factor, as of an experiment; the name has a bit for each factor
-///   that is on, in their order, the first the lowest;  truth/  the specimens;
+///   S1/0000/ …  the first specimen's cut without any factor, as of an experiment; the name has a
+///   bit for each factor that is on, in hexadecimal, in their order, the first the lowest;  truth/  the specimens;
 ///   factors.json  factors.csv (a row for each factor)  cuts.csv (for each cut)  factors.svg  manifest.json  bench.json
 ///
-/// @returns what factors.json holds. @throws DataError where a file cannot be written; Cancelled.
+/// @returns the content of factors.json. @throws InvalidArgument for fewer than two factors; DataError for a folder
+/// with other files or another seed, or where a file cannot be written; Cancelled.
 [[nodiscard]] nlohmann::ordered_json screen_factors(const ScreeningSettings& settings,
                                                     const std::filesystem::path& output, const RunContext& run,
                                                     Workers& workers, Monitor& monitor);

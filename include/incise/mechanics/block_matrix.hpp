@@ -10,11 +10,12 @@
 
 namespace incise {
 
-/// Which 3x3 blocks of a vertex-by-vertex matrix exist (compressed rows, columns ascending, diagonal always present).
+/// Sparsity pattern of a matrix of 3x3 blocks, one row and one column of blocks per vertex: compressed rows, columns
+/// ascending, diagonal blocks always present.
 struct BlockPattern {
-  std::vector<std::int32_t> row_start;  ///< N + 1
-  std::vector<std::int32_t> column;     ///< one per block
-  std::vector<std::int32_t> diagonal;   ///< slot of block (i, i), N
+  std::vector<std::int32_t> row_start;  ///< N + 1, into `column`: first slot of each row
+  std::vector<std::int32_t> column;     ///< per slot: the block's column
+  std::vector<std::int32_t> diagonal;   ///< N: slot of block (i, i)
   [[nodiscard]] std::size_t rows() const { return diagonal.size(); }
   [[nodiscard]] std::size_t blocks() const { return column.size(); }
 };
@@ -31,20 +32,21 @@ struct BlockMatrix {
   }
 };
 
-/// A copy in single precision, for products whose errors are put right elsewhere: half the bytes, and the product takes
-/// the time its bytes need. Relative rounding 6e-8 of each entry.
+/// Single-precision copy of a BlockMatrix, for products whose errors are corrected elsewhere. It needs half the memory,
+/// and memory bandwidth limits the product. Each entry is rounded by up to 6e-8 of its value.
 struct BlockMatrixF {
   std::shared_ptr<const BlockPattern> pattern;
   std::vector<float> values;  ///< 9 per block, row-major, and 4 zeros: room for one load beyond the end
 
   explicit BlockMatrixF(std::shared_ptr<const BlockPattern> p);
 };
-/// Rounds every entry of `matrix` into `result`, a matrix of the same pattern.
+/// Rounds every entry of `matrix` into `result`. @throws InvalidArgument unless both share one pattern object.
 void convert(const BlockMatrix& matrix, BlockMatrixF& result, Workers& workers);
 
-/// y = A x. x, y: N x 3. Fixed order: same bits at any thread count with the same active_isa().
+/// Computes y = A x; x and y are N x 3. Sums have a fixed order: same bits at any thread count with the same
+/// active_isa(). @throws InvalidArgument for vectors of another size.
 void multiply(const BlockMatrix& matrix, std::span<const Vec3> x, std::span<Vec3> y, Workers& workers);
-/// The same in single precision, for vectors of four numbers per vertex, the last of which has to be 0 in x and is 0 in y.
+/// The same in single precision. x and y are N x 4; the fourth number must be 0 in x and is 0 in y.
 void multiply(const BlockMatrixF& matrix, std::span<const Eigen::Vector4f> x, std::span<Eigen::Vector4f> y,
               Workers& workers);
 

@@ -18,22 +18,23 @@ inline void describe(Visitor& v, FibreField& f) {
   v("to", f.to, "the region where the fibres end");
 }
 
-/// The direction of the fibres in each tet at rest.
+/// Result of fibre_directions.
 struct FibreDirections {
-  Outcome outcome = Outcome::Success;  ///< or NotConverged
-  std::vector<Vec3> directions;        ///< one for each tet, of length 1; empty unless outcome is Success
-  std::size_t flat_tets = 0;           ///< where the potential does not change: they take their neighbours' direction
-  int iterations = 0;
-  double residual = 0.0;  ///< over that of the potential 0
+  Outcome outcome = Outcome::Success;  ///< Success or NotConverged
+  std::vector<Vec3> directions;        ///< per tet: unit direction at rest; empty unless outcome is Success
+  std::size_t flat_tets = 0;           ///< tets with a constant potential: they take their neighbours' direction
+  int iterations = 0;                  ///< of conjugate gradients
+  double residual = 0.0;               ///< relative to the residual of the potential 0
 };
 
-/// A mesh of a million tets takes about 500.
+/// Default limit for fibre_directions. A mesh of a million tets takes about 500 iterations.
 inline constexpr int kMostFibreIterations = 10000;
 
-/// Along the gradient of the potential that is 0 in `from`, 1 in `to`, and harmonic between them, with no flux through
-/// the skin (linear tets, conjugate gradients). Equations and limits: docs/models/elasticity.md, "Fibres".
-/// @pre the mesh is sound (find_problems). @throws CaseError (field specimen.material.fibre_field.from or .to) for a
-/// region that cannot be applied to the mesh or selects no vertex, or where both select the same one.
+/// Computes the direction of the fibres in each tet: along the gradient of the potential that is 0 in `from`, 1 in `to`
+/// and harmonic between them, with no flux through the skin (linear tets, conjugate gradients). Equations and limits:
+/// docs/models/elasticity.md, "Fibres".
+/// @throws InvalidArgument if find_problems(mesh) finds any; CaseError (field specimen.material.fibre_field.from or
+/// .to) for a region that cannot be applied to the mesh or selects no vertex, and for regions with a common vertex.
 [[nodiscard]] FibreDirections fibre_directions(const TetMesh& mesh, const FibreField& field,
                                                int most_iterations = kMostFibreIterations);
 

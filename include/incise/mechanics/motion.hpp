@@ -10,37 +10,39 @@
 
 namespace incise {
 
-/// Tissue that moves: a value that can be saved, compared and continued with the same bits.
+/// Moving tissue: a value that can be saved, compared and continued with the same bits.
 struct Motion {
   TissueState tissue;
-  Points velocities_mm_s;  ///< N x 3; on held axes: how fast the holder moves them, 0 unless the caller says otherwise
+  Points velocities_mm_s;  ///< N x 3; on held axes the prescribed velocity, 0 unless the caller sets it
   double time_s = 0.0;
 };
-/// At the given state, without speed, at time 0.
+/// Returns the given state with zero velocity, at time 0.
 [[nodiscard]] Motion motion_at_rest(const TissueModel& model, const TissueState& state);
 
 struct MotionSettings {
   double step_s = 0.01;         ///< > 0
-  bool has_inertia = true;      ///< false: quasi-static, every step ends in equilibrium; mass and alpha play no part
+  bool has_inertia = true;      ///< false: quasi-static, every step ends in equilibrium; mass and alpha have no effect
   double rayleigh_alpha = 0.0;  ///< 1/s, >= 0: damping force alpha M v
-  double rayleigh_beta = 0.0;  ///< s, >= 0: damping force beta K v, K the rotation-frozen stiffness at the step's start
-  int max_newton_iterations = 1;  ///< 1: linearly implicit, one linear system a step as SOFA's EulerImplicitSolver does
-  double relative_tolerance = 1e-6;  ///< of the step's first right side or 1e-6 E L² (L: the body's box), in (0, 1)
+  double rayleigh_beta = 0.0;  ///< s, >= 0: damping force beta K v; K: rotation-frozen elastic stiffness at step start
+  int max_newton_iterations = 1;  ///< 1: linearly implicit, one linear system per step, as SOFA's EulerImplicitSolver
+  double relative_tolerance = 1e-6;  ///< (0, 1); relative to the larger of the step's first right side and 1e-6 E L²
+                                     ///< (L: diagonal of the body's box)
   LinearSolver solver = LinearSolver::Automatic;
-  int max_cg_iterations = 4000;  ///< per system
+  int max_cg_iterations = 4000;  ///< per linear system
 };
 
 struct StepReport {
   Outcome outcome = Outcome::NotConverged;  ///< Success or NotConverged
   int newton_iterations = 0;
   int linear_iterations = 0;       ///< of conjugate gradients
-  double relative_residual = 0.0;  ///< of the step's equation where Newton checked it (more than 1 iteration), else of
-                                   ///< the linear one's tolerance
+  double relative_residual = 0.0;  ///< of the step's equation, last one measured; if max_newton_iterations is 1 and the
+                                   ///< linear system was solved: relative_tolerance
 };
 
-/// Memory for matrices and vectors, kept from step to step. Never affects a result.
+/// Memory for matrices and vectors, reused from step to step. Never affects a result.
 class MotionWorkspace {
  public:
+  /// @throws InvalidArgument for a setting out of range.
   MotionWorkspace(const TissueModel& model, const MotionSettings& settings);
   ~MotionWorkspace();
   MotionWorkspace(MotionWorkspace&&) noexcept;
@@ -53,12 +55,14 @@ class MotionWorkspace {
   std::unique_ptr<Data> data_;
 };
 
-/// One step of implicit Euler with lumped mass: x₁ = x₀ + h v₁, M (v₁ − v₀)/h = f(x₁) + loads − (α M + β K₀) v₁, solved
-/// by Newton's method from x₀. Forces: elastic, viscous, support planes, gravity and tractions of the model, and
-/// `applied_mn` (N x 3, or empty). A step that does not converge leaves `motion` as it was. Order 1 in the step; damps
-/// fast vibration (a mode of angular frequency ω loses the factor 1/√(1 + ω² h²) per step). Settings and model must be
-/// those that the workspace was made for. Throws InvalidArgument. Source: Baraff and Witkin (1998), eq. 6, for one
-/// iteration; SOFA's form of Rayleigh damping.
+/// Takes one step of implicit Euler with lumped mass: x₁ = x₀ + h v₁, M (v₁ − v₀)/h = f(x₁) + loads − (α M + β K₀) v₁,
+/// solved by Newton's method from x₀. Forces: elastic, viscous, supports, gravity and tractions of the model, and
+/// `applied_mn` (N x 3, mN, or empty). A step that does not converge leaves `motion` unchanged. First order in the
+/// step; damps fast vibration (the amplitude of a mode of angular frequency ω falls by the factor 1/√(1 + ω² h²) per
+/// step).
+/// @pre model and settings are those that the workspace was made for.
+/// @throws InvalidArgument for a setting out of range, arrays of the wrong size or a workspace of another model.
+/// Source: Baraff and Witkin (1998), eq. 6, for one iteration; SOFA's form of Rayleigh damping.
 [[nodiscard]] StepReport advance_motion(const TissueModel& model, Motion& motion, const MotionSettings& settings,
                                         MotionWorkspace& workspace, Workers& workers,
                                         std::span<const Vec3> applied_mn = {});

@@ -14,9 +14,10 @@
 namespace incise {
 
 struct StaticSettings {
-  double relative_tolerance = 1e-6;  ///< |free residual| / max(|reactions|, floor)
-  int max_newton_iterations = 60;    ///< in all
-  double first_load_fraction = 1.0;  ///< of the prescribed displacements; halved by itself when Newton stalls
+  double relative_tolerance = 1e-6;  ///< (0, 1); of |residual on free axes| / max(|reactions|, |loads|, 1e-6 E L²)
+                                     ///< (L: diagonal of the body's box)
+  int max_newton_iterations = 60;    ///< >= 1; over all load steps
+  double first_load_fraction = 1.0;  ///< (0, 1]; size of the first load step, halved automatically if Newton stalls
   LinearSolver solver = LinearSolver::Automatic;
 };
 
@@ -26,17 +27,17 @@ struct StaticResult {
   TissueState state;
   int iterations = 0;
   int load_steps = 0;
-  int linear_iterations = 0;  ///< of conjugate gradients, in all
+  int linear_iterations = 0;  ///< of conjugate gradients, over all systems
   double relative_residual = std::numeric_limits<double>::quiet_NaN();  ///< last one measured; NaN: none was
-  std::vector<double> residual_history;
+  std::vector<double> residual_history;  ///< every relative_residual that was measured
   std::vector<Vec3> reactions_mn;  ///< one per entry of model.constraints: the force of the constraint on the tissue
   double max_displacement_mm = 0.0;
-  double penetration_mm = 0.0;  ///< deepest vertex behind a support; more than 0.05 is reported as a warning
+  double penetration_mm = 0.0;  ///< of the deepest vertex behind a support; above 0.05 the monitor gets a warning
   std::size_t inverted_tets = 0;
   double wall_s = 0.0;
-  std::string solver;  ///< what was chosen and why, for a person
+  std::string solver;  ///< the solver that was chosen, and why; for a person
 };
-/// Why a stretch is of no use and what may help, for a person; empty when it is a success.
+/// Explains to a person why a stretch failed and what may help; empty if it succeeded.
 [[nodiscard]] std::string explain_stretch(const StaticResult& stretched);
 inline void describe(Visitor& v, StaticResult& r) {
   v("outcome", r.outcome, "How the search for equilibrium ended.");
@@ -58,14 +59,17 @@ inline void describe(Visitor& v, StaticResult& r) {
   v("solver", r.solver, "What was chosen and why.");
 }
 
-/// Newton with line search on the energy/residual, from `start` (default: rest): the prescribed displacements are
-/// spread over load steps that adapt by themselves. Every failure is an outcome. Cost: one linear system per iteration,
-/// solved exactly by Cholesky or as well as the iteration deserves by conjugate gradients. `monitor` hears of every
-/// iteration.
+/// Finds static equilibrium by Newton's method with a line search on residual and energy, from `start` (null: rest).
+/// The prescribed displacements, and the forces that are out of balance at the start, are applied in load steps of
+/// adaptive size. Every failure is an outcome. Cost: one linear system per iteration (two where the exact tangent is
+/// not positive definite), solved to rounding by Cholesky or only as accurately as the iteration needs by conjugate
+/// gradients. `monitor` receives a message for every iteration. @throws InvalidArgument for a setting out of range.
 [[nodiscard]] StaticResult solve_static(const TissueModel& model, const StaticSettings& settings, Workers& workers,
                                         Monitor& monitor, const TissueState* start = nullptr);
 
-/// Von Mises stress of each live tet (0 for carved ones), kPa (Cauchy stress of the corotational law: R σ Rᵀ).
+/// Returns the von Mises stress of each tet, kPa; 0 for carved ones. It is that of the Cauchy stress P Fᵀ / J for
+/// StableNeoHookean, and of P Rᵀ (small strains in the rotated frame) for Corotational and for inverted tets. Without
+/// viscous stress.
 [[nodiscard]] std::vector<double> von_mises_kpa(const TissueModel& model, const TissueState& state);
 
 }  // namespace incise

@@ -10,34 +10,35 @@
 
 namespace incise {
 
-/// The stiffness of tissue that changes little from step to step: tangent, inertia M/Δt², support,
-/// what the caller adds for one step, and held axes. With rotations frozen, of plain corotational tissue only tets are assembled anew that
-/// were carved or that turned by more than some 0.01 rad since they were assembled last; forces are those of every tet
-/// and exact. Other tissue, and other tangents, are assembled anew in each step. Order of use in a step: begin, lend and add, hold. Same bits
-/// at any thread count; what is kept depends on the steps since the last one that began fresh.
+/// Stiffness matrix of tissue that changes little from step to step: tangent, inertia M/Δt², supports, the caller's
+/// additions for one step, and held axes. With frozen rotations, a tet of plain corotational tissue is reassembled only
+/// if it was carved, its fill changed, or it turned by more than 0.02 rad since it was last assembled; the forces are
+/// always exact. Other tissue and other tangents are reassembled in each step. Call in each step: begin, then lend and
+/// add, then hold. Same bits at any thread count; the matrix depends on the steps since the last fresh one.
 class StepStiffness {
  public:
   explicit StepStiffness(const TissueModel& model);
   ~StepStiffness();
   StepStiffness(StepStiffness&&) noexcept;
 
-  /// Adds the elastic and support forces at state.positions to `forces`, mN, and brings the matrix up to date. Updates
-  /// state.rotations.
-  /// @param viscous_s  how long the step takes for viscous tissue, s: its viscous forces are added, and it is assembled
-  /// anew in each step; absent: the long-time response.
-  /// @param is_fresh  every tet is assembled anew, so that nothing depends on earlier steps. So it is at the first
-  /// step, and where
-  ///                  step_s is not that of the last.
+  /// Adds the elastic and support forces at state.positions to `forces` (N x 3, mN) and brings the matrix up to date.
+  /// Updates state.rotations.
+  /// @param step_s  Δt of the inertia, s.
+  /// @param is_fresh  reassembles every tet, so that nothing depends on earlier steps. The first step, and a step with
+  /// another step_s, are always fresh.
+  /// @param viscous_s  duration of the step for viscous tissue, s: adds its viscous forces and reassembles every tet;
+  /// absent: the long-time response.
   void begin(const TissueModel& model, TissueState& state, double step_s, bool is_fresh, Tangent tangent,
              std::span<Vec3> forces, Workers& workers, const std::optional<double>& viscous_s = {});
-  /// Allows the caller to add to the sixteen blocks of a tet: what it adds is taken back at the next begin().
+  /// Allows the caller to add to the sixteen blocks of a tet; the next begin() restores them.
   void lend(const TissueModel& model, TetId tet);
-  /// Identity rows for held axes, as hold_constrained.
+  /// Replaces the rows and columns of held axes by those of the identity, as hold_constrained.
+  /// @pre from step to step `also_held` changes only at changed_rows().
   void hold(const TissueModel& model, std::span<Vec3> right_side, std::span<const std::uint8_t> also_held,
             Workers& workers);
 
   [[nodiscard]] BlockMatrix& matrix();
-  /// Per row: 1 where a block differs from that of the step before.
+  /// Per row of blocks: 1 if a block may differ from the previous step's, otherwise 0.
   [[nodiscard]] std::span<const std::uint8_t> changed_rows() const;
 
  private:

@@ -13,10 +13,10 @@
 
 namespace incise {
 
-inline constexpr int kFewestTets = 100;  ///< that may be aimed for
+inline constexpr int kFewestTets = 100;  ///< smallest allowed target_tets
 
-/// How tetrahedra are made. Lengths in mm, angles in degrees; h is the local edge length that the sizing field asks
-/// for.
+/// Settings of the mesher; `describe` gives the meaning of each. Lengths in mm, angles in degrees. Factors are relative
+/// to the edge length of the sizing field.
 struct MeshingSettings {
   std::optional<int> target_tets;
   double target_tolerance = 0.10;
@@ -35,7 +35,7 @@ struct MeshingSettings {
 };
 void describe(Visitor& v, MeshingSettings& s);
 
-/// Everything that is wrong with the settings, a sentence each; empty: usable.
+/// Returns every violation; empty if the settings are valid.
 [[nodiscard]] std::vector<Problem> validate(const MeshingSettings& settings);
 
 struct MeshingPhase {
@@ -47,29 +47,29 @@ inline void describe(Visitor& v, MeshingPhase& p) {
   v("wall_s", p.wall_s, "Time that it took.");
 }
 
-/// A mesh and what is needed to trust it.
+/// A mesh, its quality and how it was made.
 struct [[nodiscard]] MeshingResult {
   TetMesh mesh;  ///< mm, LPS; positively oriented, one face-connected component, every vertex used, vertices in Morton
                  ///< order
   MeshQuality quality;
   bool meets_quality = false;  ///< smallest dihedral angle >= min_dihedral_deg
-  bool meets_volume = false;   ///< volume within volume_tolerance of the label's
+  bool meets_volume = false;   ///< volume within volume_tolerance of label_volume_mm3
   bool meets_target = true;    ///< count within target_tolerance of target_tets, if there is one
 
-  double label_volume_mm3 = 0.0;       ///< of the body that was meshed, see each function
-  double relative_volume_error = 0.0;  ///< (mesh - label) / label
+  double label_volume_mm3 = 0.0;       ///< volume of the meshed body in the input; see each function
+  double relative_volume_error = 0.0;  ///< (mesh volume - label_volume_mm3) / label_volume_mm3
   double iso = 0.5;                    ///< occupancy on the mesh's surface, chosen so that the volume matches
-  double fine_mm = 0.0;                ///< edge lengths asked for, after scaling towards target_tets
-  double coarse_mm = 0.0;
-  double predicted_tets = 0.0;  ///< before the first refinement
-  int refinements = 0;
-  int improvements = 0;
+  double fine_mm = 0.0;                ///< edge length requested in the band, after scaling towards target_tets
+  double coarse_mm = 0.0;              ///< longest edge length requested, after the same scaling
+  double predicted_tets = 0.0;         ///< count predicted before the first refinement
+  int refinements = 0;                 ///< tried to meet count and volume
+  int improvements = 0;                ///< tried to meet the angle
 
   std::size_t dropped_bodies = 0;    ///< components of the occupancy other than the largest, left out
-  double dropped_volume_mm3 = 0.0;   ///< their volume, with that of specks too faint to count as bodies
+  double dropped_volume_mm3 = 0.0;   ///< volume left out: these components, and specks too faint to count as bodies
   std::size_t dropped_tets = 0;      ///< tets not face-connected with the rest, left out
-  std::vector<MeshingPhase> phases;  ///< time by phase, repeated phases added up
-  double wall_s = 0.0;
+  std::vector<MeshingPhase> phases;  ///< time by phase, with repetitions added up
+  double wall_s = 0.0;               ///< total time
 };
 inline void describe(Visitor& v, MeshingResult& m) {
   v.bulk("mesh", m.mesh, "One component, positively oriented.");
@@ -92,31 +92,34 @@ inline void describe(Visitor& v, MeshingResult& m) {
   v("wall_s", m.wall_s, "Time that meshing took.");
 }
 
-/// Longest side, along the grid's axes, of the box round all tissue (occupancy of at least 0.5, any label but 0), mm; 0 without tissue.
+/// Returns the longest side, mm, along the grid's axes, of the box round all tissue (occupancy of at least 0.5, or any
+/// label but 0); 0 without tissue. @throws InvalidArgument unless there is one value per voxel.
 [[nodiscard]] double longest_side_mm(const GrayVolume& occupancy);
 [[nodiscard]] double longest_side_mm(const LabelVolume& labels);
 
-/// Tetrahedra that fill the tissue of an occupancy volume (values in [0, 1], the fraction of each voxel that is tissue;
-/// see occupancy.hpp), with edge lengths from the sizing field: the CT becomes a body that can be simulated. Delaunay
+/// Fills the tissue of an occupancy volume with tetrahedra whose edge lengths follow the sizing field. Delaunay
 /// refinement of the trilinearly interpolated occupancy, then perturbation and exudation of slivers (CGAL Mesh_3,
-/// sequential). Only the largest component (voxels of at least 0.5 that share faces) is meshed; what touches the border
-/// of the volume is closed half a voxel beyond it. The label's volume is what the surface of occupancy 0.5 encloses;
-/// the mesh is refined on the neighbouring iso surface that makes the volumes agree. Same input, same mesh, bit for
-/// bit.
-/// @throws InvalidArgument for broken volumes and settings (all violations at once), occupancy that never reaches 0.5,
-///   a body too small for the edge length, or a predicted count above max_tets (with the prediction).
+/// sequential). Meshes only the largest component (voxels of at least 0.5 that share faces). Tissue at the border of
+/// the volume is closed half a voxel beyond the outermost voxel centres. `label_volume_mm3` is the volume inside the
+/// surface of occupancy 0.5; to match it, the mesher refines on a neighbouring iso surface. The same input gives the
+/// same mesh, bit for bit.
+/// @param occupancy  fraction of each voxel that is tissue, [0, 1]; see occupancy.hpp.
+/// @throws InvalidArgument for broken volumes or settings (all violations at once), occupancy that never reaches 0.5, a
+/// body too small for the edge length, or too many tets (a prediction above max_tets, or refinement that runs away).
 /// @throws Cancelled between phases and during refinement.
 /// @note About 3 s for 100 000 tets on one thread.  Source: [CGAL-Mesh3].
 MeshingResult mesh_labels(const GrayVolume& occupancy, const SizingField& sizing, const MeshingSettings& settings,
                           Monitor& monitor);
 
-/// As above from labels: every label but 0 is tissue, blurred as `occupancy_of` does by default. The label's volume is
-/// that of its voxels. @throws InvalidArgument also for a body thinner than its voxels can carry once blurred.
+/// As above, from labels: every label but 0 is tissue, blurred as by `occupancy_of` with its default.
+/// `label_volume_mm3` is the volume of the labelled voxels. @throws InvalidArgument also for a body so thin that the
+/// blur leaves no surface of that volume.
 MeshingResult mesh_labels(const LabelVolume& labels, const SizingField& sizing, const MeshingSettings& settings,
                           Monitor& monitor);
 
-/// As above from a closed surface, through voxels of half the fine edge length, or as given, > 0. The label's volume is
-/// what the surface encloses. @throws InvalidArgument also for what `occupancy_of` refuses.
+/// As above, from a closed surface, which is first sampled in voxels. `label_volume_mm3` is the volume that the surface
+/// encloses. @param voxel_mm  edge of a voxel, > 0; absent: half the fine edge length.
+/// @throws InvalidArgument also for surfaces that `occupancy_of` refuses.
 MeshingResult mesh_surface(const TriMesh& closed_surface, const SizingField& sizing, const MeshingSettings& settings,
                            Monitor& monitor, std::optional<double> voxel_mm = std::nullopt);
 

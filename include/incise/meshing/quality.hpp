@@ -23,9 +23,9 @@ inline void describe(Visitor& v, EdgeStatistics& e) {
   v({"max", "Longest.", "mm"}, e.max_mm);
 }
 
-/// How good the tetrahedra are. The dihedral angle is the one between two faces of a tet: 70.5 degrees in a regular
-/// one, near 0 or 180 in a sliver. The radius ratio is 3 x inscribed / circumscribed radius: 1 in a regular tet, 0 in a
-/// flat one.
+/// Size and quality of a mesh. A dihedral angle is the angle between two faces of a tet: 70.5 degrees in a regular tet,
+/// near 0 or 180 in a sliver. The radius ratio is 3 x inscribed / circumscribed radius: 1 in a regular tet, 0 in a flat
+/// or inverted one.
 struct MeshQuality {
   static constexpr int kBinWidthDeg = 5;
 
@@ -38,7 +38,7 @@ struct MeshQuality {
       dihedral_histogram{};  ///< six angles per tet; bin b holds [5 b, 5 b + 5) degrees
   double min_radius_ratio = 0.0;
   double mean_radius_ratio = 0.0;
-  double smallest_tet_mm3 = 0.0;  ///< signed: negative when a tet is inverted
+  double smallest_tet_mm3 = 0.0;  ///< signed: negative if a tet is inverted
   EdgeStatistics edges;
 };
 inline void describe(Visitor& v, MeshQuality& q) {
@@ -57,15 +57,15 @@ inline void describe(Visitor& v, MeshQuality& q) {
   v("edge_mm", q.edges, "Lengths of the edges.");
 }
 
-/// Measures every tet and edge. O(M log M). An empty mesh has zeros everywhere.
+/// Measures every tet and edge. A mesh without tets has zeros everywhere but in `vertices`. O(M log M) for M tets.
 /// @throws InvalidArgument for a vertex that is not finite or an index out of range, naming the first.
 [[nodiscard]] MeshQuality quality_of(const TetMesh& mesh);
 
-/// Lengths of the edges whose mid-point the predicate accepts, for example those in the band around the cut.
+/// Returns the lengths of the edges whose mid-point the predicate accepts, for example those near the cut.
+/// @throws as quality_of.
 [[nodiscard]] EdgeStatistics edges_where(const TetMesh& mesh, const std::function<bool(const Vec3&)>& accepts_midpoint);
 
-/// The report as a table and a histogram of dihedral angles drawn with characters, for a person; ends with a line
-/// break.
+/// Returns a table and a text histogram of the dihedral angles, for people to read; ends with a line break.
 [[nodiscard]] std::string to_text(const MeshQuality& quality);
 
 }  // namespace incise

@@ -11,7 +11,7 @@
 
 namespace incise {
 
-/// Edge lengths of a graded mesh: short where the needle and its neighbourhood pass, long elsewhere.
+/// Edge lengths of a graded mesh: short in a band around the cut, long elsewhere.
 struct SizingSettings {
   double fine_mm = 0.8;
   double coarse_mm = 4.0;
@@ -31,50 +31,52 @@ inline void describe(Visitor& v, SizingSettings& s) {
   v({"band_below_mm", "Band below the tip of the tool.", "mm"}, s.band_below_mm, kNotNegative);
 }
 
-/// The settings with the edge lengths of a body whose longest side is this long: the default ones are made for 40 mm and more, a smaller
-/// body has them in proportion. No body (0, refused by the mesher): those of a large one.
+/// Returns the default settings for a body with this longest side, mm. From 40 mm on they are the defaults; for a
+/// smaller body, `fine_mm` and `coarse_mm` shrink in proportion. For 0 (no body, which the mesher refuses) they are the
+/// defaults too.
 [[nodiscard]] SizingSettings default_lengths(double longest_side_mm);
 
-/// Everything that is wrong with the settings, a sentence each; empty: usable.
+/// Returns every violation; empty if the settings are valid.
 [[nodiscard]] std::vector<Problem> validate(const SizingSettings& settings);
 
-/// The cut that a mesh is made for.
+/// The planned cut, round which the mesh is fine.
 struct PlannedCut {
-  Contour path;  ///< N x 3, mm, LPS, on the surface of the body as it lies in the CT (rest configuration)
+  Contour path;  ///< N x 3, mm, LPS, on the surface of the body at rest
   Vec3 approach = -Vec3::UnitZ();  ///< points into the tissue; need not be unit
-  double depth_mm = kPlannedDepthMm;  ///< of the tip of the tool below the path, along `approach`, > 0
+  double depth_mm = kPlannedDepthMm;  ///< depth of the tool's tip below the path, along `approach`, > 0
 };
 
-/// The wanted edge length at every point of space, mm, LPS: `fine_mm` in the band around the wall that the needle
-/// sweeps (path x depth, widened by the band widths), then growing linearly with the distance d from the band: h =
-/// min(fine + growth d, coarse). Immutable; evaluation is exact and costs O(path points).
+/// The requested edge length h at every point (mm, LPS): `fine_mm` in the band around the surface that the needle
+/// sweeps (path x depth, widened by the band widths), and h = min(fine + growth d, coarse) at distance d from the band.
+/// Immutable. Evaluation is exact; O(path points).
 class SizingField {
  public:
-  /// The same edge length everywhere. @throws InvalidArgument unless 0 < edge_mm < infinity.
+  /// Returns a field of one edge length everywhere. @throws InvalidArgument unless 0 < edge_mm < infinity.
   [[nodiscard]] static SizingField uniform(double edge_mm);
 
-  /// Fine around a cut. Paths of more than 256 points are resampled to 256.
+  /// Returns a field that is fine around a cut. Paths of more than 256 points are resampled to 256.
   /// @throws InvalidArgument listing every violation of the settings and of the cut (fewer than 2 points, 3 if closed;
-  /// a coordinate that is not finite; zero approach; depth <= 0).
+  /// a coordinate that is not finite; length 0; zero approach; depth <= 0).
   [[nodiscard]] static SizingField around_cut(const PlannedCut& cut, const SizingSettings& settings = {});
 
   [[nodiscard]] double edge_length_mm(const Vec3& p) const { return edge_length_at_mm(distance_to_band_mm(p)); }
-  /// 0 inside the band; 0 everywhere for a uniform field.
+  /// Returns the distance, mm, to the band; 0 inside it, and everywhere for a uniform field.
   [[nodiscard]] double distance_to_band_mm(const Vec3& p) const;
-  /// The edge length at a distance from the band.
+  /// Returns the edge length, mm, at a distance from the band.
   [[nodiscard]] double edge_length_at_mm(double distance_to_band_mm) const;
   [[nodiscard]] bool has_band() const { return band_.has_value(); }
-  /// Whether p lies in the band that is meshed finely; false everywhere for a uniform field.
+  /// Returns whether p lies in the band; false everywhere for a uniform field.
   [[nodiscard]] bool is_in_band(const Vec3& p) const { return band_ && distance_to_band_mm(p) <= 0.0; }
 
-  /// The field with `fine_mm` and `coarse_mm` multiplied by the factor; band and growth stay. @pre factor > 0, finite.
+  /// Returns the field with `fine_mm` and `coarse_mm` multiplied by the factor; band and growth stay the same.
+  /// @throws InvalidArgument unless the factor is finite and > 0.
   [[nodiscard]] SizingField scaled(double factor) const;
   [[nodiscard]] const SizingSettings& settings() const { return settings_; }
 
  private:
   struct Band {
     ViewFrame view;
-    Points path;  ///< in the view: x, y, height
+    Points path;  ///< in the view's frame: x, y, height; mm
     bool is_closed = true;
     double inside_mm = 0.0;
     double outside_mm = 0.0;

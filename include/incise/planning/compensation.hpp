@@ -36,14 +36,14 @@ inline void describe(Visitor& v, CompensationSettings& s) {
     kNotNegative);
 }
 
-/// A corrected path, and what was done to each waypoint.
+/// A corrected path, and the move of each waypoint.
 struct Compensation {
   ToolPath path;
   std::vector<double> error_mm;  ///< per waypoint: signed error measured there, after smoothing; negative = too close
   std::vector<double> move_mm;   ///< per waypoint: distance moved, positive = away from the tumour
-  /// Per waypoint: 1 where the move was cut short by close_margin_mm or the surface's rim.
+  /// Per waypoint: 1 where close_margin_mm or the surface's rim cut the move short.
   std::vector<std::uint8_t> is_limited;
-  /// Per waypoint: 1 where no measured point lay in its sector (its neighbours were used).
+  /// Per waypoint: 1 where no measured point lay in its sector; its error is interpolated from its neighbours.
   std::vector<std::uint8_t> is_interpolated;
   std::size_t limited_waypoints = 0;
   std::size_t interpolated_waypoints = 0;
@@ -61,22 +61,22 @@ inline void describe(Visitor& v, Compensation& c) {
   v("max_move_mm", c.max_move_mm, "Greatest move.");
 }
 
-/// Sets the three figures that follow from the lists: how many waypoints were limited and interpolated, and the
-/// greatest move.
+/// Sets the fields that follow from the lists: limited_waypoints, interpolated_waypoints and max_move_mm.
 void count_moves(Compensation& compensation);
 
-/// The paper's correction: each waypoint moves away from, or towards, the tumour's centre by the error that was
-/// measured in its direction. Error of waypoint i: mean signed error (see contour_errors) of the measured points whose
-/// polar angle about the tumour's centre, seen along the approach, is nearer to the waypoint's than to its neighbours'.
-/// The waypoint moves radially in the picture and stays on the surface, so far that the straight distance between old
-/// and new place equals relaxation · |error|, sloping or not. Depth, speed, order and start stay as they are.
+/// Corrects a path by the paper's rule: each waypoint moves away from, or towards, the tumour's centre by the error
+/// that was measured in its direction. The error of a waypoint is the mean signed error (see contour_errors) of the
+/// measured points whose polar angle about the tumour's centre, seen along the approach, is nearer to the waypoint's
+/// angle than to its neighbours'. The waypoint moves radially in the picture and stays on the surface; the straight
+/// distance in space between its old and new place equals relaxation · |error|, unless the move is limited. Depth,
+/// speed, order and start do not change.
 /// @param current   closed path that was cut (in simulation), on the surface.
-/// @param measured  mid-line (or inner edge) that came out, mm, same frame; open is allowed, gaps are bridged by
-/// interpolation.
-/// @throws InvalidArgument listing every violation of the settings, for an open path or no measured point;
-/// CaseError if the path does not run once round the tumour's centre in order of angle (the rule is then undefined), or
-/// if the corrected path fails check_path. Source: [Paper, II-C.5]; departs from it: 5.0 mm for a mid-line in place
-/// of 4.5, see docs/models/compensation.md.
+/// @param measured  mid-line (or inner edge) of that cut, mm, same frame. It may be open: gaps are interpolated.
+/// @param tumor_edge  closed, mm, same frame.
+/// @throws InvalidArgument listing every violation of the settings, or for an open path or no measured point; CaseError
+/// if the path does not run once round the tumour's centre in order of angle (the rule is then undefined), or if the
+/// current or the corrected path fails check_path. Source: [Paper, II-C.5]; departs from it: the target of a mid-line
+/// is 5.0 mm instead of 4.5, see docs/models/compensation.md.
 [[nodiscard]] Compensation compensate_paper(const ToolPath& current, const Contour& measured, const Contour& tumor_edge,
                                             const SurfaceQuery& surface, const CompensationSettings& settings = {});
 

@@ -15,18 +15,18 @@
 
 namespace incise {
 
-/// What a cut along a path was measured to be, point by point.
+/// Measured errors of a cut along a path.
 struct PathErrors {
-  Points places;                        ///< N, mm, the path's frame: where the measured contour lies, evenly spaced
+  Points places;                        ///< N, mm, the path's frame: points of the measured contour, evenly spaced
   std::vector<double> signed_error_mm;  ///< N: positive = farther from the tumour than intended
-  /// How far tissue was dragged along the path when it was cut, on average, mm, >= 0 (see TissueDrag).
+  /// Mean distance, mm, that tissue was dragged along the path when it was cut, >= 0 (see TissueDrag).
   double lag_mm = 0.0;
   bool is_success = true;  ///< the cut succeeded: ring closed in every planned layer, negative margin
-  /// Mean over the path of what the kerf lacks of the least depth that is accepted without a caution, mm, >= 0.
+  /// Depth that the kerf lacks, mean over the path, mm, >= 0, against the least depth accepted without a caution.
   double shortfall_mm = 0.0;
   int open_layers = 0;     ///< planned layers in which the ring stayed open, >= 0
-  /// The verdict on this cut, of what another course may mend: distance to the tumour, margin, layers, depth, a sound
-  /// end of the simulation.
+  /// Verdict on this cut by what another path may mend: distance to the tumour, margin, layers, depth, and whether the
+  /// simulation ended soundly.
   VerdictStatus verdict = VerdictStatus::Ok;
 };
 inline void describe(Visitor& v, PathErrors& e) {
@@ -39,10 +39,11 @@ inline void describe(Visitor& v, PathErrors& e) {
   v("verdict", e.verdict, "Of what another course may mend.");
 }
 
-/// Cuts along a path (in simulation, or in a test's stand-in for tissue) and measures; nullopt: no contour to measure.
+/// Cuts along a path, in simulation or in a test's stand-in for tissue, and measures the cut; nullopt: no contour to
+/// measure.
 using MeasureCut = std::function<std::optional<PathErrors>(const ToolPath&)>;
 
-/// Where waypoints may go.
+/// Where waypoints may lie; see the glossary, safe region.
 struct SafeRegion {
   double close_margin_mm = kCloseMarginMm;
   double electrode_radius_mm = kElectrodeRadiusMm;
@@ -81,7 +82,8 @@ struct ConvergenceSettings {
   double simulated_share = 1.0;
   std::vector<double> residual_mm;
 };
-/// The cut answers to the tool's path blurred (see PathErrors::lag_mm). What both ways of compensating take from it.
+/// The cut responds to a blurred path of the tool (see PathErrors::lag_mm). Describes the settings of this response,
+/// which both methods of compensation share.
 inline void describe_blur(Visitor& v, double& smoothing_mm, double& shift_lags, double& spread_lags) {
   v({"smoothing_mm", "Standard deviation of the Gaussian by which errors are averaged along the path.", "mm"},
     smoothing_mm, kPositive);
@@ -123,24 +125,24 @@ inline void describe(Visitor& v, ConvergenceSettings& s) {
   v({"residual_mm", "Expected beyond that; none, or one per waypoint.", "mm"}, s.residual_mm);
 }
 
-/// One simulated cut of the iteration.
+/// One pass of the iteration: a path and its simulated cut.
 struct CompensationPass {
-  std::vector<double> offset_mm;         ///< per waypoint: from the intended place, positive = away from the tumour
-  std::vector<double> error_mm;          ///< per waypoint: signed, averaged along the path; empty: nothing was measured
-  std::vector<std::uint8_t> is_limited;  ///< per waypoint: 1 where the safe region cut its move short
+  std::vector<double> offset_mm;  ///< per waypoint: distance from its intended place, positive = away from the tumour
+  std::vector<double> error_mm;   ///< per waypoint: signed, averaged along the path; empty: nothing was measured
+  std::vector<std::uint8_t> is_limited;       ///< per waypoint: 1 where the safe region cut its move short
   std::vector<std::uint8_t> is_interpolated;  ///< per waypoint: 1 where nothing was measured (its neighbours were used)
   std::vector<double> along_mm;  ///< per measured point: its place on the intended path, arc length from the start
-  std::vector<double> point_error_mm;       ///< per measured point: signed error, with the bias
+  std::vector<double> point_error_mm;       ///< per measured point: signed error, with bias, share and residual
   std::optional<double> mean_abs_error_mm;  ///< of all measured points; absent: nothing was measured
   std::optional<double> max_abs_error_mm;
-  std::optional<double> smooth_error_mm;  ///< mean of |error_mm|: what moving waypoints can correct
+  std::optional<double> smooth_error_mm;  ///< mean of |error_mm|: the part that moving waypoints can correct
   double lag_mm = 0.0;
-  double shortfall_mm = 0.0;  ///< see PathErrors
-  int open_layers = 0;        ///< likewise
+  double shortfall_mm = 0.0;                  ///< see PathErrors
+  int open_layers = 0;                        ///< likewise
   VerdictStatus verdict = VerdictStatus::Ok;  ///< likewise
-  double max_move_mm = 0.0;  ///< greatest move from the pass that it was made from
+  double max_move_mm = 0.0;                   ///< greatest move of a waypoint from the pass that this one was made from
   bool is_success = false;
-  /// What passes are compared by: mean |error| and what is missing in depth, mm, weighed alike. @pre measured.
+  /// Returns the cost by which passes are compared, mm: mean |error| plus missing depth. @pre measured.
   [[nodiscard]] double cost_mm() const { return mean_abs_error_mm.value() + shortfall_mm; }
 };
 inline void describe(Visitor& v, CompensationPass& p) {
@@ -164,10 +166,10 @@ inline void describe(Visitor& v, CompensationPass& p) {
 
 enum class CompensationOutcome {
   Converged,    ///< mean |error| within the tolerance of the floor, and the cut sound
-  BudgetSpent,  ///< all simulations made; the last one is the best, and not within the tolerance
-  BestKept,     ///< all simulations made; an earlier one was better, and is what is returned
-  AtRest,       ///< nothing to move: the error along the path is below least_move_mm, or the safe region holds it
-  NoMeasure,    ///< the cut along the intended path left nothing to measure
+  BudgetSpent,  ///< all simulations made; the last one is the best, but not within the tolerance
+  BestKept,     ///< all simulations made; an earlier one was better and is returned
+  AtRest,       ///< no next path: its moves are below least_move_mm, held by the safe region, or cannot be cut
+  NoMeasure,    ///< the cut along the intended path has nothing to measure
 };
 inline constexpr std::array<std::string_view, 5> kCompensationOutcomeNames{"converged", "budget_spent", "best_kept",
                                                                            "at_rest", "no_measure"};
@@ -175,13 +177,15 @@ inline constexpr std::array<std::string_view, 5> kCompensationOutcomeNames{"conv
   return kCompensationOutcomeNames;
 }
 
+/// Result of compensate_converging.
 struct ConvergedCompensation {
   ToolPath path;                         ///< of the best pass
   std::vector<CompensationPass> passes;  ///< one per simulation, in order; the first: the intended path
-  std::size_t best = 0;  ///< of those that succeeded (if none did: that left the fewest layers open), of these of the
-                         ///< best verdict, that of the least cost_mm
+  /// Index of the best pass: one that succeeded if there is any, then fewest open layers, best verdict, least cost_mm.
+  std::size_t best = 0;
   CompensationOutcome outcome = CompensationOutcome::NoMeasure;
-  /// Geometric mean, per pass, of what was left of the mean |error|, from the first to the best; absent without two.
+  /// Fraction of the mean |error| that remains after a pass: geometric mean from the first pass to the best one; absent
+  /// if the first is the best.
   std::optional<double> contraction;
   [[nodiscard]] const CompensationPass& result() const { return passes.at(best); }
 };
@@ -194,13 +198,14 @@ inline void describe(Visitor& v, ConvergedCompensation& c) {
   v("history", c.passes, "One for each simulation, in order.");
 }
 
-/// Moves the waypoints of a path across the surface, pass by pass, until the cut that it leads to lies where it was
-/// intended. See docs/models/compensation.md: errors are taken along the path from where the tool cut them (lag behind
-/// it), averaged, and corrected along the normal of the tumour edge; steps are accelerated (Anderson), kept inside a
-/// trust region and the safe region; the best pass is kept. Every path that is returned was cut.
-/// @param intended  closed path on the surface, at the intended distance; its tumor_edge has to be given.
-/// @throws InvalidArgument listing every violation of the settings, or for an open path; CaseError if the intended path
-/// fails check_path. Whatever `measure` throws passes through.
+/// Moves the waypoints of a path over the surface, pass by pass, until the cut lies where it was intended. Each pass
+/// attributes errors to the place where the tool cut them (they lag behind it), averages them along the path and
+/// corrects them along the normal of the tumour edge. Steps are accelerated (Anderson) and kept inside a trust region
+/// and the safe region. The best pass is returned; its path has been cut. See docs/models/compensation.md.
+/// @param intended  closed path on the surface, at the intended distance, with its tumor_edge.
+/// @throws InvalidArgument listing every violation of the settings, or for an open path, no tumour edge, or a bias or
+/// residual that does not fit the path; CaseError if the intended path fails check_path or touches the tumour edge.
+/// Exceptions of `measure` pass through.
 [[nodiscard]] ConvergedCompensation compensate_converging(const ToolPath& intended, const SurfaceQuery& surface,
                                                           const MeasureCut& measure,
                                                           const ConvergenceSettings& settings = {});

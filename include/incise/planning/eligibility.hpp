@@ -24,14 +24,14 @@ inline constexpr std::array<std::string_view, 3> kAdviceNames{"compensate", "cut
   return kAdviceNames;
 }
 
-/// One quantity of this specimen against those of the calibration's specimens.
+/// How far a quantity of this specimen lies from the calibration's specimens.
 struct SpecimenDistance {
   std::string name;
   double value = 0.0;
-  double mean = 0.0;   ///< of the calibration's specimens; for a logarithmic quantity the geometric one
-  double in_sd = 0.0;  ///< how many standard deviations of what a next specimen would show `value` lies above the mean
+  double mean = 0.0;             ///< of the calibration's specimens; geometric for a logarithmic quantity
+  double in_sd = 0.0;            ///< `value` minus mean, in standard deviations of the prediction for a next specimen
   bool is_better_below = false;  ///< a value below the mean is good for the specimen, however far
-  double degrees = 4.0;          ///< degrees of freedom of that standard deviation: n + 3, >= 4
+  double degrees = 4.0;          ///< degrees of freedom of that standard deviation: n + 3 for n specimens, >= 4
 };
 inline void describe(Visitor& v, SpecimenDistance& d) {
   v("name", d.name, "Of the quantity.");
@@ -42,53 +42,56 @@ inline void describe(Visitor& v, SpecimenDistance& d) {
   v.internal("degrees", d.degrees, "Degrees of freedom of that standard deviation.");
 }
 
-/// How a quantity differs between specimens that are alike.
+/// Spread of a quantity between specimens that are alike.
 struct UsualSpread {
-  double sd = 0.0;  ///< usual standard deviation between them; of a logarithmic quantity that of its logarithm, > 0
+  double sd = 0.0;  ///< usual standard deviation, > 0; of the logarithm for a logarithmic quantity
   bool is_logarithmic = false;
   bool is_better_below = false;  ///< see SpecimenDistance
 };
 
-/// The distance of a quantity from the calibration's specimens. Few specimens hardly determine their spread, so it is
-/// blended with the usual one, which counts as much as five specimens would: sd² = (4 usual² + Σ (x − mean)²) / (4 + n
-/// − 1) · (1 + 1/n).
-/// @throws InvalidArgument without specimens, or for numbers not above 0 of a logarithmic quantity.
+/// Computes the distance of a quantity from the calibration's specimens. A few specimens hardly determine their spread,
+/// so it is blended with the usual one, which counts as much as five specimens would: sd² = (4 usual² + Σ (x − mean)²)
+/// / (4 + n − 1) · (1 + 1/n).
+/// @throws InvalidArgument without specimens, for a usual spread not above 0, for numbers that are not finite, or not
+/// above 0 for a logarithmic quantity.
 [[nodiscard]] SpecimenDistance distance_from(std::string name, double value, std::span<const double> calibrated,
                                              const UsualSpread& usual);
 
-/// How probable it is that the calibration says nothing about a specimen, by the quantity that is most unlike: before
-/// anything is known kPriorUnlike; specimens that are alike have distances of Student's t (the spread is estimated,
-/// too), others of one that is kUnlikeSpread times as wide. 0.005, 0.03, 0.21, 0.73 and 0.97 at distances of 0, 2, 3, 4
-/// and 5 from twenty specimens, 0.10 and 0.26 at 3 and 4 from two. Quantities for which below is better count above the
-/// mean alone; several quantities are looked at one at a time. Source: [BoxTiao1968].
-/// @return in (0, 1]; kPriorUnlike without distances; 1 where one of them is no number.
+/// Returns the probability that the calibration says nothing about a specimen, by its most unlike quantity. The prior
+/// is kPriorUnlike. Distances of specimens that are alike follow Student's t (the spread is estimated, too); those of
+/// other specimens follow one that is kUnlikeSpread times as wide. From twenty specimens the result is 0.005, 0.03,
+/// 0.21, 0.73 and 0.97 at distances of 0, 2, 3, 4 and 5; from two, 0.10 and 0.26 at 3 and 4. Quantities that are better
+/// below count only above the mean. Quantities are looked at one at a time. Source: [BoxTiao1968].
+/// @return in (0, 1]; kPriorUnlike without distances; 1 if a distance is not finite.
 [[nodiscard]] double probability_unlike(std::span<const SpecimenDistance> distances);
 
-inline constexpr double kPriorUnlike = 0.05;   ///< share of specimens of which a calibration says nothing. Chosen.
-inline constexpr double kUnlikeSpread = 10.0;  ///< how many times as widely they are spread. Chosen: far, either way.
+inline constexpr double kPriorUnlike = 0.05;   ///< share of specimens about which a calibration says nothing. Chosen.
+inline constexpr double kUnlikeSpread = 10.0;  ///< how many times as widely these are spread. Chosen: far, either way.
 
-/// That a correction makes the cut of a specimen worse of which the calibration says nothing: it errs as planned as
-/// others did, e ~ N(mean of errors_mm, kUnlikeErrorSdMm²) in the mean along the ring, whatever the simulation
-/// predicts for it, and e + move_mm lies farther from 0 than e: farther moves are the riskier ones.
+/// Returns the probability that a correction makes the cut worse if the calibration says nothing about the specimen.
+/// Its cut then errs as planned as others did, whatever its simulation predicts: mean error along the ring e ~ N(mean
+/// of errors_mm, kUnlikeErrorSdMm²). The correction makes it worse if e + move_mm lies farther from 0 than e, so
+/// farther moves are riskier.
+/// @param move_mm    mean move of the cut by the correction, positive = away from the tumour.
 /// @param errors_mm  mean signed errors of the calibration's cuts, as photographed. @return one half without any.
 [[nodiscard]] double probability_worse_if_unlike(double move_mm, std::span<const double> errors_mm);
 
 inline constexpr double kUnlikeErrorSdMm = 0.7;  ///< half of what a cut errs as planned. Chosen.
 
-/// What the advice is based on.
+/// Evidence for the advice.
 struct EligibilityEvidence {
   PathRisk intended, corrected;
-  std::optional<CutGain> gain;              ///< absent: nothing could be simulated along both paths …
-  std::string no_gain_because;              ///< … and why
-  bool is_accepted = true;                  ///< the correction, by its own simulation
-  bool is_registered = true;                ///< a transform was found, and nothing argued against it
+  std::optional<CutGain> gain;              ///< absent: no scenario could be simulated along both paths …
+  std::string no_gain_because;              ///< … because of this
+  bool is_accepted = true;                  ///< whether its own simulation accepts the correction
+  bool is_registered = true;                ///< whether a transform was found to which nothing objects
   double registration_rmse_mm = 0.0;        ///< of the simulated surface against the measured one
-  std::vector<SpecimenDistance> distances;  ///< of everything that is known of both
-  bool is_stiffness_compared = true;        ///< one of them is of its stiffness
+  std::vector<SpecimenDistance> distances;  ///< of every quantity that is known of specimen and calibration
+  bool is_stiffness_compared = true;        ///< whether `distances` contains the stiffness
   std::vector<double> calibrated_error_mm;  ///< mean signed errors of the calibration's cuts
 };
 
-/// Which advice is given when. Every number is a choice; see docs/models/eligibility.md.
+/// Rules for the advice. Every number is a choice; see docs/models/eligibility.md.
 struct EligibilityRules {
   double least_gain_sds = 1.0;
   double most_p_worse = 0.15;
@@ -108,22 +111,23 @@ inline void describe(Visitor& v, EligibilityRules& r) {
     {0.0, 1.0, true, true});
 }
 
+/// Advice on a specimen, with its reasons.
 struct Eligibility {
   Advice advice = Advice::DoNotUse;
-  std::vector<std::string> reasons;  ///< each with its numbers; of the advice alone, at least one
-  /// probability_unlike of its distances, but at least kPriorUnlike where its stiffness is not among them, and 1 where
-  /// something other than a distance argues against the simulation.
+  std::vector<std::string> reasons;  ///< each with its numbers; for the advice alone, at least one
+  /// probability_unlike of the distances; at least kPriorUnlike if the stiffness is not among them; 1 if something
+  /// other than a distance argues against the simulation.
   double p_unlike = 0.0;
-  /// probability_worse_if_unlike of the gain's move; one half where something other than a distance argues against the
-  /// simulation. Absent without a gain, or where that is no number.
+  /// probability_worse_if_unlike of the gain's move; one half if something other than a distance argues against the
+  /// simulation. Absent without a gain, or if the gain is not a number.
   std::optional<double> p_worse_if_unlike;
-  /// That the corrected cut is the worse one: the gain's p_worse as far as the calibration says something of this
-  /// specimen, p_worse_if_unlike as far as it does not. Absent where that is.
+  /// Probability that the corrected cut is the worse one: p_worse of the gain, weighted by 1 − p_unlike, plus
+  /// p_worse_if_unlike, weighted by p_unlike. Absent if p_worse_if_unlike is.
   std::optional<double> p_worse;
 };
 
-/// Compares the evidence with the rules. All reasons against the simulation are named before any gain is considered.
-/// A value that is not a number is such a reason.
+/// Judges the evidence by the rules. All reasons against the simulation come before any about the gain; a value that is
+/// not a number is such a reason.
 /// @throws InvalidArgument with every violation of the rules.
 [[nodiscard]] Eligibility judge_eligibility(const EligibilityEvidence& evidence, const EligibilityRules& rules = {});
 

@@ -46,11 +46,11 @@ struct PlanSettings {
   AxisMode axis_mode = AxisMode::Approach;
   double rim_clearance_mm = 1.0;  ///< the path keeps this far from where the surface ends in the picture, >= 0
 };
-/// Its first field; a case file puts the drawn curve beside it.
+/// Describes the first field; a case file adds the drawn curve beside it.
 inline void describe_kind(Visitor& v, PlanSettings& s) {
   v("kind", s.kind, "A ring around the tumour edge, or an open cut along a drawn curve.");
 }
-/// All the others.
+/// Describes all other fields.
 inline void describe_course(Visitor& v, PlanSettings& s) {
   v({"lateral_margin_mm", "From the tumour edge to the kerf's mid-line.", "mm"}, s.lateral_margin_mm, {0.5, 50.0});
   v({"depth_mm", "Of the tool's tip below the surface.", "mm"}, s.depth_mm, {0.5, 50.0});
@@ -72,46 +72,51 @@ inline void describe(Visitor& v, PlanSettings& s) {
   describe_course(v, s);
 }
 
-/// Every violation; empty: valid.
+/// Returns every violation; empty if the settings are valid.
 [[nodiscard]] std::vector<Problem> validate(const PlanSettings& settings);
 
-/// A drawn contour laid onto the surface along the approach. Points are kept in order; segments longer than 1 mm are
-/// subdivided so that the result hugs the surface.
-/// @param tolerance_mm  farthest that a point may lie above or below the surface.
+/// Projects a drawn tumour edge onto the surface along the approach. The order of the points is kept; segments longer
+/// than 1 mm are subdivided to follow the surface.
+/// @param edge          mm, same frame as the surface; treated as closed.
+/// @param tolerance_mm  farthest that a drawn point may lie above or below the surface. Points between them may lie
+/// farther by the length of their segment.
 /// @throws CaseError naming the first point that misses the surface or lies farther off ("tumour edge off the
-/// surface"), or if the contour has too few points, coincides, is not finite or crosses itself.
+/// surface"), or if the contour has too few points, has no length or area, is longer than 10 m, is not finite or
+/// crosses itself.
 [[nodiscard]] Contour project_tumor_edge(const Contour& edge, const SurfaceQuery& surface, const Vec3& approach,
                                          double tolerance_mm = 5.0);
-/// The same for the drawn curve of an open cut.
+/// Projects the drawn curve of an open cut in the same way; treated as open.
 [[nodiscard]] Contour project_line(const Contour& line, const SurfaceQuery& surface, const Vec3& approach,
                                    double tolerance_mm = 5.0);
 
-/// The ring at one lateral margin outside the tumour edge, lying on the surface.
-/// Margin = straight distance in space to the edge's segments (the measure of every evaluation here); on a surface of
+/// Plans the ring at one lateral margin outside the tumour edge, on the surface.
+/// The margin is the straight distance in space to the edge's segments, as in every evaluation here. On a surface of
 /// curvature radius R it is shorter than the distance along the surface by about margin³ / (24 R²): 0.006 mm for 5 mm
-/// and R = 30 mm. Each waypoint keeps it within 0.01 mm; the tool runs straight between waypoints, which brings it
-/// closer by spacing² / (8 R_path): 0.03 mm for 2 mm and 15 mm.
+/// and R = 30 mm. Each waypoint keeps the margin within 0.01 mm. The tool runs straight between waypoints, which brings
+/// it closer by spacing² / (8 R_path): 0.03 mm for 2 mm and 15 mm.
 /// @param surface     closed skin of the tissue in the configuration that is cut, mm.
 /// @param tumor_edge  closed, on the surface (see project_tumor_edge), mm.
-/// @returns frame sim_stretched, counter-clockwise seen against the approach, started as the settings say, with the
-/// edge inside.
+/// @returns a path in frame sim_stretched, counter-clockwise seen along the approach, which starts where the settings
+/// say and encloses the edge.
 /// @throws InvalidArgument listing every violation of the settings; CaseError for "a path outside the tissue" (beyond
 /// or within rim_clearance_mm of the surface's rim, or over a fold) and for "a depth through the tissue", naming
 /// waypoint and thickness. Source: [Paper, II-C.5], which does not say how it offsets; see docs/models/planning.md.
 [[nodiscard]] ToolPath plan_ring(const SurfaceQuery& surface, const Contour& tumor_edge, const PlanSettings& settings);
 
-/// The open cut along a curve on the surface, starting at its end farther along start_direction. @throws as plan_ring.
+/// Plans the open cut along a curve on the surface, mm; it starts at the end farther along start_direction. @throws as
+/// plan_ring.
 [[nodiscard]] ToolPath plan_line(const SurfaceQuery& surface, const Contour& line, const PlanSettings& settings);
 
-/// Refuses a path that cannot be cut into this tissue, whoever made it.
-/// @throws CaseError for: fewer than 8 (open: 2) waypoints, numbers that are not finite, depth or speed
-/// not above 0, an axis that is not unit or does not point into the tissue, a waypoint more than 2 mm off the surface
-/// or within rim_clearance_mm of its rim, a depth that reaches through the tissue, a course that crosses itself. Names
-/// the first waypoint concerned.
+/// Checks that a path can be cut into this tissue, whatever its origin.
+/// @param rim_clearance_mm  >= 0.
+/// @throws CaseError naming the first waypoint concerned, for: fewer than 8 (open: 2) waypoints, numbers that are not
+/// finite, a depth or speed not above 0, an axis that is not unit or does not point into the tissue, a waypoint more
+/// than 2 mm off the surface or within rim_clearance_mm of its rim, a depth through the tissue, a surface that is not
+/// closed, a path that crosses itself, seen along the approach.
 void check_path(const ToolPath& path, const SurfaceQuery& surface, const Vec3& approach, double rim_clearance_mm = 1.0);
 
-/// Tissue under a point of the surface, mm: along unit `axis` from there to the first exit. nullopt: no exit (surface
-/// not closed).
+/// Returns the thickness of the tissue under a point of the surface, mm: along unit `axis` from there to the first
+/// exit. nullopt: no exit (the surface is not closed).
 [[nodiscard]] std::optional<double> thickness_mm(const SurfaceQuery& surface, const Vec3& point, const Vec3& axis);
 
 }  // namespace incise

@@ -12,7 +12,7 @@
 
 namespace incise {
 
-/// How a simulated path is laid on the measured tissue. Defaults are the paper's (II-D.2).
+/// How a simulated path is projected onto the measured tissue. Defaults are the paper's (II-D.2).
 struct ProjectSettings {
   PathKind kind = PathKind::Incise;
   double mark_depth_mm = 1.0;
@@ -25,7 +25,7 @@ struct ProjectSettings {
   double max_shift_mm = 5.0;
   AxisMode axis_mode = AxisMode::Approach;
 };
-/// Depth and speed of a path that is laid onto a surface: above 0, and far beyond what an incision of tissue needs.
+/// Range of depth, mm, and speed, mm/s, of a projected path: above 0, and far beyond what an incision needs.
 inline constexpr Range kLaidDepthMm{0.0, 50.0, true};
 inline constexpr Range kLaidSpeedMmS{0.0, 50.0, true};
 inline void describe(Visitor& v, ProjectSettings& s) {
@@ -45,16 +45,18 @@ inline void describe(Visitor& v, ProjectSettings& s) {
   v("tool_axis", s.axis_mode, "The tool as the path holds it, or against the measured surface's normal.");
 }
 
-/// The measured tissue: a cloud or a mesh of triangles, in the robot's frame, seen along an approach.
+/// Surface of the measured tissue: a cloud or a mesh of triangles, in the robot's frame, seen along an approach.
 class MeasuredSurface {
  public:
   /// A mesh without triangles is a cloud. @throws InvalidArgument as CloudSurface and SurfaceQuery.
   MeasuredSurface(const TriMesh& surface, const Vec3& approach);
   [[nodiscard]] const Vec3& approach() const { return approach_; }
+  /// Whether the surface is a cloud of noisy points; otherwise a mesh, whose triangles are taken as exact.
   [[nodiscard]] bool is_cloud() const {
     return cloud_.has_value();
-  }  ///< noisy points; else triangles, taken as they are
-  /// The surface seen at p; nullopt where there is none. A mesh has no gaps where it has triangles.
+  }
+  /// Returns the surface seen at p along the approach; nullopt if none is seen. A mesh has no gaps where it has
+  /// triangles.
   [[nodiscard]] std::optional<CloudPlace> at(const Vec3& p) const;
 
  private:
@@ -63,36 +65,40 @@ class MeasuredSurface {
   std::optional<SurfaceQuery> mesh_;
 };
 
-/// A path in the robot's frame, and how well it is founded on what was measured.
+/// A path in the robot's frame, and how well the measured points support it.
 struct ProjectedPath {
   ToolPath path;
-  double max_gap_mm = 0.0;    ///< farthest from any point of path or edge to the nearest measured point, in the picture
-  double max_shift_mm = 0.0;  ///< farthest that a point was moved along the approach
+  double max_gap_mm = 0.0;      ///< greatest distance of a point of path or edge from a measured point, in the picture
+  double max_shift_mm = 0.0;    ///< greatest move of a point onto the surface under it, along the approach
   double mean_shift_mm = 0.0;   ///< signed: positive = the measured surface lies above the simulated one
-  double shift_noise_mm = 0.0;  ///< rms of the shifts about their local averages
-  std::size_t bridged = 0;      ///< points more than 0.5 mm from a measured one
+  double shift_noise_mm = 0.0;  ///< rms deviation of the shifts from their local averages; 0 for a mesh
+  std::size_t bridged = 0;      ///< points more than 0.5 mm from the nearest measured point
 };
 
-/// Mean of the waypoints' axes after a similarity: the direction along which a path is laid down. @pre as project_path.
+/// Returns the mean of the waypoints' axes after a similarity: the unit direction, robot's frame, in which a path is
+/// projected.
+/// @throws InvalidArgument without waypoints, for a T that is not a similarity, or if the axes point to different
+/// sides.
 [[nodiscard]] Vec3 approach_of(const ToolPath& path, const Mat4& T_robot_sim);
 
-/// The map p -> center + (p - center) / scale, robot's frame. A camera whose lengths are all `scale` times too long
-/// about `center` sees true places through its inverse: applied after T_robot_sim (whose scale is `scale`) it gives the
-/// rigid transform of a simulation at true size, applied to the measured points the tissue at true size.
-/// @pre scale > 0, finite.
+/// Returns the map p -> center + (p - center) / scale, robot's frame. It corrects a camera whose lengths are all
+/// `scale` times too long about `center`. Applied after T_robot_sim (whose scale is `scale`), it gives the rigid
+/// transform of a simulation at true size; applied to the measured points, it gives the tissue at true size.
+/// @throws InvalidArgument unless scale > 0 and both are finite.
 [[nodiscard]] Mat4 at_true_size(double scale, const Vec3& center_mm);
 
-/// Takes path and tumour edge through a similarity and lays them along the approach onto the measured surface. The
-/// simulated surface knows the shape, the measured one where it lies: how far a point is moved is a smooth function of
-/// its place (a local plane in the picture, weights (1 - d²/r²)²), so that a cloud's noise is averaged over more
-/// than the patch under each point. A marking path follows the tumour edge, an incision the path; depth and speed are
-/// lengths of the real world and are not scaled.
+/// Transforms a path and its tumour edge by a similarity and projects them along the approach onto the measured
+/// surface. The simulation determines the shape, the measurement the position. On a cloud, the shift of a point onto
+/// the surface is therefore a smooth function of its place (a local plane in the picture, weights (1 - d²/r²)²), which
+/// averages the cloud's noise over more than the patch under each point. On a mesh, each point lies on the surface
+/// under it. A marking path follows the tumour edge, an incision the path. Depth and speed are real lengths and are not
+/// scaled.
 /// @param path         frame sim_stretched; for a marking path with a tumour edge.
 /// @param T_robot_sim  rotation, one positive scale and a shift, mm.
-/// @param name         stands for the surface in messages.
-/// @throws InvalidArgument with every violation of the settings, for another frame or a T that is no similarity;
-/// DataError naming the first point that misses the surface, lies beyond its rim, in a gap that is too large, too
-/// far above or below it, or more than 1 mm from where the points around it are moved to.
+/// @param name         name of the surface in messages.
+/// @throws InvalidArgument with every violation of the settings, for another frame, a missing edge or a T that is not a
+/// similarity; DataError naming the first point that misses the surface, lies beyond its rim, in too large a gap, or
+/// too far above or below it, or whose shift differs by more than 1 mm from its local average.
 [[nodiscard]] ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const MeasuredSurface& surface,
                                          const ProjectSettings& settings, const std::filesystem::path& name);
 

@@ -16,18 +16,18 @@
 
 namespace incise {
 
-/// One way in which the real tissue may answer.
+/// One way in which the real tissue may respond.
 struct CutScenario {
   double weight = 1.0;   ///< > 0; only ratios count
   double bias_mm = 0.0;  ///< expected error of the real cut less that of the simulated one, positive = farther out
 };
 
-/// Cuts along a path in every scenario and measures: one entry for each, in their order; nullopt: no contour to
-/// measure.
+/// Cuts along a path in every scenario and measures the cuts: one entry for each scenario, in order; nullopt: no
+/// contour to measure.
 using MeasureScenarios = std::function<std::vector<std::optional<PathErrors>>(const ToolPath&)>;
 
-/// What a real cut is expected to err beyond its scenario, at the waypoints of the intended path, and how far that is
-/// known. It is taken to be the same along every path of one specimen, the reading of its photograph included.
+/// Expected error of a real cut beyond its scenario, at the waypoints of the intended path, and its uncertainty. It is
+/// assumed to be the same along every path of one specimen, including the reading of its photograph.
 struct CutResidual {
   std::vector<double> mean_mm;     ///< per waypoint
   Eigen::MatrixXd covariance_mm2;  ///< between waypoints: scale of the distribution, its diagonal above 0
@@ -62,15 +62,15 @@ inline void describe(Visitor& v, RobustSettings& s) {
   v("seed", s.seed, "Of these.");
 }
 
-/// What is to be expected of a path, from cuts along it in every scenario.
+/// Expected errors and risk of a path, from cuts along it in every scenario.
 struct PathRisk {
   double expected_abs_error_mm = 0.0;  ///< mean over scenarios, residuals and the path
-  /// Of the mean |error| along the path of one cut: the middle 80 and 95 % of scenarios and residuals; absent:
-  /// unmeasured.
+  /// Middle 80 and 95 % of scenarios and residuals, of the mean |error| along the path of one cut, mm; absent: nothing
+  /// was measured.
   std::optional<Interval> abs_error_80, abs_error_95;
-  double p_close_margin = 0.0;         ///< that somewhere less tissue is left than the close margin
-  double unmeasured_weight = 0.0;      ///< share of the scenarios whose cut left nothing to measure; left out above
-  /// The probability if every scenario that could not be measured came too close.
+  double p_close_margin = 0.0;     ///< probability that somewhere less tissue is left than the close margin
+  double unmeasured_weight = 0.0;  ///< share of the scenarios whose cut had nothing to measure; left out of the rest
+  /// Returns p_close_margin if every scenario that could not be measured is counted as too close.
   [[nodiscard]] double p_close_bound() const { return unmeasured_weight + (1.0 - unmeasured_weight) * p_close_margin; }
 };
 inline void describe(Visitor& v, PathRisk& r) {
@@ -88,29 +88,30 @@ inline void describe(Visitor& v, PathRisk& r) {
 }
 
 enum class RobustOutcome {
-  Met,     ///< the path keeps the probability, in the scenarios' own cuts, those without a measure counted as too close
-  NotMet,  ///< no path that was found inside the safe region does; the one of the least probability is returned
-  NoMeasure,  ///< no scenario could be measured along the intended or the corrected path
+  Met,        ///< the path keeps the probability in the scenarios' own cuts; those without a measure count as too close
+  NotMet,     ///< no path that was tried does; the best of them is returned
+  NoMeasure,  ///< no scenario could be measured along the intended, or none along the corrected path
 };
 inline constexpr std::array<std::string_view, 3> kRobustOutcomeNames{"met", "not_met", "no_measure"};
 [[nodiscard]] constexpr Names names_of(RobustOutcome) {
   return kRobustOutcomeNames;
 }
 
+/// Result of compensate_robust.
 struct RobustCompensation {
   ToolPath path;
-  std::vector<double> offset_mm;  ///< per waypoint, from the intended place
-  std::vector<std::uint8_t> is_limited;
+  std::vector<double> offset_mm;         ///< per waypoint, from the intended place, mm, positive = away from the tumour
+  std::vector<std::uint8_t> is_limited;  ///< per waypoint: 1 where the safe region cut its move short
   RobustOutcome outcome = RobustOutcome::NoMeasure;
   PathRisk intended, corrected, robust;
   std::size_t simulations = 0;  ///< scenarios times paths
 };
 
-/// Chooses, among smooth paths inside the safe region, the one that minimises the expected |error| over the scenarios
-/// subject to P(tissue beside the tumour < close margin anywhere) <= max_probability. Scenarios are cut along the
-/// intended, the corrected and the chosen path; in between their errors are taken to answer to moves as
-/// compensate_converging takes them to. See docs/models/compensation.md.
-/// @param corrected_offset_mm  per waypoint: of the path that the iteration ended with.
+/// Chooses the robust path: among smooth paths inside the safe region, the one that minimises the expected |error| over
+/// the scenarios subject to P(tissue beside the tumour < close margin anywhere) <= max_probability. Scenarios are cut
+/// along the intended, the corrected and the chosen path; between these, errors respond to moves as
+/// compensate_converging assumes. See docs/models/compensation.md.
+/// @param corrected_offset_mm  per waypoint, mm: the offsets of the path with which the iteration ended.
 /// @throws InvalidArgument with every violation of the settings, without scenarios, for weights that are not above 0, a
 /// residual that does not fit the path or an open path; CaseError if the intended path fails check_path.
 [[nodiscard]] RobustCompensation compensate_robust(const ToolPath& intended,
@@ -120,23 +121,24 @@ struct RobustCompensation {
                                                    const MeasureScenarios& measure, const CutResidual& residual,
                                                    const RobustSettings& settings = {});
 
-/// What a correction is expected to win, mm: mean |error| along the intended path less that along the corrected one.
+/// Expected gain of a correction, mm: mean |error| along the intended path minus that along the corrected one. Only
+/// scenarios that could be measured along both paths count.
 struct CutGain {
   double mean_mm = 0.0;
-  double sd_mm = 0.0;    ///< over scenarios and residuals; both cuts of one specimen have the same residual
+  double sd_mm = 0.0;  ///< over scenarios and residuals; both cuts of one specimen have the same residual
   std::optional<Interval> interval_80, interval_95;  ///< the middle 80 and 95 %, likewise
-  double p_worse = 0.0;  ///< that it is below 0; of scenarios whose ring closes along both paths, as all of this
+  double p_worse = 0.0;                              ///< probability that the gain is below 0
   double move_mm =
       0.0;  ///< by which the correction moves the cut, mean along it and over scenarios; positive: outwards
 };
 
-/// Both paths of a correction in every scenario.
+/// Risks of the intended and the corrected path, and the gain.
 struct PathOutlook {
   PathRisk intended, corrected;
   std::optional<CutGain> gain;  ///< absent: no scenario could be measured along both
 };
 
-/// The risks of two paths and what the second is expected to win, without looking for a better one.
+/// Estimates the risks of both paths and the expected gain of the second, without looking for a better path.
 /// @throws as compensate_robust.
 [[nodiscard]] PathOutlook foresee_paths(const ToolPath& intended, const std::vector<double>& corrected_offset_mm,
                                         const SurfaceQuery& surface, const std::vector<CutScenario>& scenarios,

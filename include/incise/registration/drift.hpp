@@ -16,12 +16,12 @@
 
 namespace incise {
 
-/// What a registration may do with the scale: low = high fixes it.
+/// Allowed range of a registration's scale; low = high fixes it.
 struct ScaleRange {
   double low = 1.0;
   double high = 1.0;
   [[nodiscard]] static ScaleRange fixed(double scale = 1.0) { return {scale, scale}; }
-  [[nodiscard]] static ScaleRange free();
+  [[nodiscard]] static ScaleRange free();  ///< any scale above 0
   [[nodiscard]] bool is_fixed() const { return low == high; }
 };
 inline void describe(Visitor& v, ScaleRange& r) {
@@ -31,7 +31,7 @@ inline void describe(Visitor& v, ScaleRange& r) {
   if (v.sets()) r.high = high.value_or(std::numeric_limits<double>::infinity());
 }
 
-/// Settings of coherent point drift. All are free of units: lengths are shares of the target's root mean square radius.
+/// Settings of coherent point drift. Lengths are shares of the target's root mean square radius, so none has a unit.
 struct DriftSettings {
   ScaleRange scale = ScaleRange::free();
   double outlier_weight = 0.1;
@@ -54,14 +54,14 @@ inline void describe(Visitor& v, DriftSettings& s) {
     "Width to start with, as a share of the radius; absent: from the clouds' mean squared distance.", kPositive);
 }
 
-/// Every violation; empty: valid.
+/// Returns every violation; empty: valid.
 [[nodiscard]] std::vector<Problem> validate(const DriftSettings& settings);
 
 enum class DriftOutcome {
   Converged,
   IterationLimit,
-  Degenerate,  ///< the points (of one cloud, or those that still match) lie on a line or in one point, so that no
-               ///< rotation follows from them
+  Degenerate,  ///< no rotation can be determined: the points of one cloud, or those that still match, lie on a line or
+               ///< in one point
   Cancelled,
 };
 inline constexpr std::array<std::string_view, 4> kDriftOutcomeNames{"converged", "iteration_limit", "degenerate",
@@ -74,19 +74,20 @@ struct CoherentPointDrift {
   Similarity T_target_source;
   DriftOutcome outcome = DriftOutcome::IterationLimit;
   double sigma_mm = 0.0;       ///< width of the Gaussians at the end
-  double matched_share = 0.0;  ///< of the target's points, by probability
+  double matched_share = 0.0;  ///< of the target's points, by probability, [0, 1]
   int iterations = 0;
   double last_step_mm = 0.0;  ///< root mean square movement of the source in the last step
 };
 
-/// Rigid coherent point drift with scale from one start: the target is taken as drawn from Gaussians about the moved
-/// source points and a uniform background, and transform and width are those of greatest likelihood (EM). The E-step
-/// truncates the Gaussians and sees clusters while they are wide; the last steps see all points, so the fixed point is
-/// that of all pairs up to the truncation. Memory O(N + M). A scale range restricts the M-step exactly, because its
-/// objective is a parabola in the scale. Neither units nor origin matter.
-/// Without `first_sigma` only the start's rotation counts: middles and sizes are made alike first, as published.
-/// @param source, target  M x 3 and N x 3, any unit.  @param start  where the source is to begin.
-/// @pre finite points, at least one each.  @throws InvalidArgument.  Source: [Myronenko2010], Fig. 2.
+/// Aligns the source with the target by rigid coherent point drift with scale, from one start. The target is modelled
+/// as drawn from Gaussians about the moved source points and a uniform background; transform and width maximise the
+/// likelihood (EM). The E-step truncates the Gaussians and, while they are wide, replaces points by clusters; the last
+/// steps use all points, so the fixed point is that of all pairs up to the truncation. A scale range restricts the
+/// M-step exactly, because its objective is a parabola in the scale. Neither unit nor origin matters. Memory O(N + M).
+/// Without `first_sigma` only the start's rotation counts: centroids and sizes are matched first, as published.
+/// @param source, target  M x 3 and N x 3, any unit, the result's too.  @param start  initial transform, scale > 0.
+/// @throws InvalidArgument for an empty cloud, a point that is not finite, or a bad start or setting.
+/// Source: [Myronenko2010], Fig. 2.
 [[nodiscard]] CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec3> target,
                                              const Similarity& start, const DriftSettings& settings, Workers& workers,
                                              Monitor& monitor);

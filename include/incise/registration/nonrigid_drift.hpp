@@ -6,6 +6,7 @@
 
 namespace incise {
 
+/// Settings of non-rigid coherent point drift. Lengths are shares of the source's root mean square radius.
 struct NonrigidSettings {
   double smoothness = 0.8;
   double stiffness = 30.0;
@@ -31,21 +32,24 @@ inline void describe(Visitor& v, NonrigidSettings& s) {
 }
 
 struct NonrigidDrift {
-  Points moved_mm;  ///< the source's points where they end
+  Points moved_mm;  ///< M x 3: final positions of the source's points
   DriftOutcome outcome = DriftOutcome::IterationLimit;
-  double sigma_mm = 0.0;
-  double matched_share = 0.0;  ///< of the target's points
+  double sigma_mm = 0.0;       ///< width of the Gaussians at the end
+  double matched_share = 0.0;  ///< of the target's points, by probability, [0, 1]
   double largest_move_mm = 0.0;
   int iterations = 0;
-  int rank = 0;  ///< Gaussians that the deformation is a sum of
+  int rank = 0;  ///< number of Gaussians whose sum is the deformation
 };
 
-/// Non-rigid coherent point drift: as rigid_drift, but each source point moves by a smooth field v(y) = Σ_c g(y, c)
-/// W_c, a sum of Gaussians of width β about `rank` centres spread evenly over the source, at a cost of λ/2 WᵀGW. The
-/// centres lie β/2 apart, where the field that they leave out is below a hundredth of that of a centre on every point.
-/// Memory O(rank · M); no matrix over pairs of points.
-/// @pre finite points, at least one each, aligned as well as a similarity can (rigid_drift first).  @throws
-/// InvalidArgument. Source: [Myronenko2010], Fig. 4; centres in place of eigenvectors of G.
+/// Aligns the source with the target by non-rigid coherent point drift: as rigid_drift, but each source point moves by
+/// a smooth field v(y) = Σ_c g(y, c) W_c, a sum of Gaussians of width β about `rank` centres spread evenly over the
+/// source, at a cost of λ/2 WᵀGW. The centres lie β/2 apart (farther if that would exceed max_centers); at β/2 the
+/// field omits less than a hundredth of one with a centre on every point. Memory O(rank · M); no matrix over pairs of
+/// points.
+/// @param source, target  M x 3 and N x 3, any unit, the result's too.
+/// @pre the clouds are aligned as well as a similarity can (rigid_drift first).
+/// @throws InvalidArgument for an empty cloud, a point that is not finite, or a setting out of range.
+/// Source: [Myronenko2010], Fig. 4; centres in place of eigenvectors of G.
 [[nodiscard]] NonrigidDrift nonrigid_drift(std::span<const Vec3> source, std::span<const Vec3> target,
                                            const NonrigidSettings& settings, Workers& workers, Monitor& monitor);
 

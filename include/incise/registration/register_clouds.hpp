@@ -16,8 +16,8 @@
 
 namespace incise {
 
-/// Settings of register_clouds. Lengths are shares of the target's root mean square radius, so that units do not
-/// matter; but for `settling_mm`, which is in the clouds' unit.
+/// Settings of register_clouds. Lengths are shares of the target's root mean square radius, except `settling_mm`, which
+/// is in the clouds' unit.
 struct RegistrationSettings {
   ScaleRange scale{0.9, 1.1};
   double outlier_weight = 0.3;
@@ -38,19 +38,20 @@ struct RegistrationSettings {
 };
 void describe(Visitor& v, RegistrationSettings& s);
 
-/// Every violation; empty: valid.
+/// Returns every violation; empty: valid.
 [[nodiscard]] std::vector<Problem> validate(const RegistrationSettings& settings);
 
 enum class RegistrationOutcome {
   Converged,
-  IterationLimit,  ///< still moving when the steps ran out
-  IllDetermined,   ///< the surfaces can slide along each other: some motion leaves the residual as it is
+  IterationLimit,  ///< the pose was still changing when the iterations ran out
+  IllDetermined,   ///< the surfaces can slide along each other: some motion hardly changes the residual
   Ambiguous,       ///< another pose fits about as well
   Mirrored,        ///< the source's mirror image fits clearly better: one of the clouds is reflected
-  PoorFit,         ///< the residual is too large, or too little of the source finds a counterpart
-  OtherShape,      ///< ridges and hollows of one surface are not those of the other: another specimen, or changed tissue
-  ScaleAtLimit,    ///< the scale stands at an end of its range: what the clouds ask for lies beyond it
-  Degenerate,      ///< a cloud is a point or a line, or has fewer than 12 points; no transform follows
+  PoorFit,         ///< the residual is too large, or too little of the source has a counterpart
+  OtherShape,      ///< the surfaces have different ridges and hollows: another specimen, or changed tissue
+  ScaleAtLimit,    ///< the scale is at an end of its range: the clouds fit a scale beyond it better
+  Degenerate,      ///< no transform: a cloud is a point or a line or has fewer than 12 points, or too few find a
+                   ///< counterpart
   Cancelled,
 };
 inline constexpr std::array<std::string_view, 10> kRegistrationOutcomeNames{
@@ -60,28 +61,29 @@ inline constexpr std::array<std::string_view, 10> kRegistrationOutcomeNames{
   return kRegistrationOutcomeNames;
 }
 
-/// How well two surfaces fix the transform between them. Seven motions (three turns and three shifts about the
-/// overlap's middle, and the logarithm of the scale) are turned into the seven independent ones that the distances
-/// along the normals see least to best, each measured by how far it moves the overlap (rms). A plane leaves three of
-/// them (four with scale) at 0, a sphere three, a cylinder two. Sources: [Gelfand2003] for the slippage, [Censi2007]
-/// for the covariance.
+/// How well two surfaces determine the transform between them. The motions (three turns about the overlap's centroid,
+/// three shifts, and the logarithm of the scale) are combined into independent ones, ordered from the least to the most
+/// visible in the distances along the normals. The size of a motion is how far it moves the overlap (rms). On a plane
+/// three motions (four with scale) have visibility 0, on a sphere three, on a cylinder two. Sources: [Gelfand2003] for
+/// the slippage, [Censi2007] for the covariance.
 struct PoseObservability {
   int motions = 0;                  ///< 7, or 6 with the scale fixed
-  std::array<double, 7> visible{};  ///< share of each motion that appears in the distances, ascending: eigenvalues of
-                                    ///< the Gauss-Newton matrix
-  /// The same for the two least visible ones, from moving the source to and fro and searching the nearest points anew:
-  /// rise of the mean squared distance over the squared motion. Noise in the normals, which makes a plane look fixed
-  /// above, does not show here.
+  std::array<double, 7> visible{};  ///< share of each motion that shows in the distances, [0, 1], ascending:
+                                    ///< eigenvalues of the Gauss-Newton matrix
+  /// The same for the two least visible motions, measured: the source is moved both ways and the nearest points are
+  /// found again; rise of the mean squared distance over the squared motion, [0, 1]. Unlike `visible`, not affected by
+  /// noise in the normals, which makes a plane look determined.
   std::array<double, 2> sharpness{};
-  double sd_mm = 0.0;          ///< standard deviation of the overlap's position from noise, all motions together (rms)
-  double weakest_sd_mm = 0.0;  ///< along the least visible motion
+  double sd_mm = 0.0;          ///< standard deviation of the overlap's position, all motions together (rms); infinite
+                               ///< if fewer than 12 pairs of points were found
+  double weakest_sd_mm = 0.0;  ///< largest standard deviation along one of the motions
   double rotation_sd_deg = 0.0;
-  double translation_sd_mm = 0.0;  ///< of the overlap's middle
+  double translation_sd_mm = 0.0;  ///< of the overlap's centroid
   double scale_sd = 0.0;           ///< relative
   Eigen::Matrix<double, 7, 7> covariance =
       Eigen::Matrix<double, 7, 7>::Zero();  ///< rotation vector (rad), translation (mm), log scale; about `center_mm`
-  Vec3 center_mm = Vec3::Zero();            ///< middle of the overlap, target frame
-  std::string weakest;                      ///< for a person: what kind of motion is least visible
+  Vec3 center_mm = Vec3::Zero();            ///< centroid of the overlap, target frame
+  std::string weakest;                      ///< the least determined motion, in words for a person
 };
 inline void describe(Visitor& v, PoseObservability& c) {
   v("motions", c.motions, "7, or 6 with the scale fixed.");
@@ -106,47 +108,48 @@ inline void describe(Visitor& v, PoseObservability& c) {
 struct Registration {
   Similarity T_target_source;
   RegistrationOutcome outcome = RegistrationOutcome::Degenerate;
-  std::vector<std::string> reasons;  ///< why it is not a success, or what to beware of: sentences for a person
-  double rmse_mm = 0.0;   ///< of the distances along the normals, over the source's points that lie above the target
-  double noise_mm = 0.0;  ///< what it would be if the surfaces were alike: roughness of both clouds
+  std::vector<std::string> reasons;  ///< why it is not a success, and cautions: sentences for a person, worst first
+  double rmse_mm = 0.0;   ///< rms of `residuals_mm`
+  double noise_mm = 0.0;  ///< expected rmse_mm if the surfaces had the same shape: roughness of both clouds
   double inlier_fraction =
-      0.0;  ///< of the source's points: above the target, distance below 3 robust standard deviations
-  double fit_fraction = 0.0;     ///< the same of those points alone that lie above the target: low for another shape
-  double target_fraction = 0.0;  ///< of the target's points, by the drift's probability
+      0.0;  ///< of the source's points, [0, 1]: above the target, distance below 3 robust standard deviations
+  double fit_fraction = 0.0;     ///< inliers as a share of the source's points above the target: low for another shape
+  double target_fraction = 0.0;  ///< matched share of the target's points, by the drift's probability, [0, 1]
   double drift_sigma_mm = 0.0;   ///< width of the drift's Gaussians at the end
-  int iterations = 0;            ///< of drift and finish
-  int starts = 0;
+  int iterations = 0;            ///< of drift, ICP finish and settling together
+  int starts = 0;                ///< of the search; 1 if a start was given
   double score = 0.0;               ///< share of the source that lies on the target to within the noise, [0, 1]
-  double rival_score = 0.0;         ///< of the best pose that is another one; 0: none
+  double rival_score = 0.0;         ///< of the rival, the best pose that is distinct from this one; 0: none
   std::optional<Similarity> rival;  ///< that pose
-  double shape_rmse_mm = 0.0;   ///< `rmse_mm` of the shapes as they are, before settling was looked for
+  double shape_rmse_mm = 0.0;   ///< `rmse_mm` before settling was searched for
   double mirror_score = 0.0;    ///< `score` of the best pose found for the source's mirror image
-  double mirror_rmse_mm = 0.0;  ///< and its residual
+  double mirror_rmse_mm = 0.0;  ///< `rmse_mm` of that pose
   bool is_handedness_determined = false;  ///< the mirror image fits clearly less well than the source
-  /// Distances along the normals, target to source, of the source's points that lie above the target (within a tenth of
-  /// its radius), mm.
+  /// Signed distances along the normals, from target to source, of the source's points above the target and within a
+  /// tenth of its radius, mm.
   std::vector<double> residuals_mm;
-  /// Misfit that neither noise nor settling explains: what nine tenths of the surface keep within, of the residual
-  /// averaged over some third of the target's radius.
+  /// Misfit that neither noise nor settling explains: the 90th percentile over neighbourhoods, each the median distance
+  /// within a fifth of the target's radius, less its noise.
   double shape_residual_mm = 0.0;
-  double settled_rms_mm = 0.0;  ///< of the settling that was found beside the pose; 0 where none was looked for
-  double settled_max_mm = 0.0;
-  bool scale_at_limit = false;       ///< the scale stands at an end of its range
-  bool is_scale_suspicious = false;  ///< outside 0.95 to 1.05: both sensors are metric
+  double settled_rms_mm = 0.0;  ///< of the settling found with the pose; 0 if it was not searched for
+  double settled_max_mm = 0.0;  ///< the greatest amount of that settling
+  bool scale_at_limit = false;       ///< the scale is at an end of its range
+  bool is_scale_suspicious = false;  ///< the scale is outside 0.95 to 1.05, although both sensors are metric
   PoseObservability certificate;
 };
 void describe(Visitor& v, Registration& r);
 
-/// Finds the similarity that lays a source surface on a target surface which shows part of it, with noise, holes and
-/// points that belong to nothing. Search: rigid coherent point drift on coarse clusters from starts spread over all
-/// rotations (and three positions along the longest axis), the best few refined; then the drift on the full clouds and
-/// an ICP finish. Where both clouds come with normals, these decide which side is up. Every result that is not to be
-/// relied upon says so in `outcome` and `reasons`. With `settling_mm` the pose is, last, found together with a smooth
-/// displacement along the source's mean normal, so that a dip is not taken for a shift. The same clouds give the same
-/// bits at any thread count. A reflection is never returned; the source's mirror image is fitted too, and where it fits
-/// better the outcome is Mirrored.
-/// @param source, target  at least 1 point each, finite, any unit; normals of unit length or none.  @throws
-/// InvalidArgument. Sources: [Myronenko2010], [Alexa2022] (even rotations).
+/// Finds the similarity that lays a source surface on a target surface. The target may show only a part of the source,
+/// with noise, holes and stray points. The search runs rigid coherent point drift on coarse clusters from rotations
+/// spread evenly over all rotations, each at seven positions along the source's two longest axes, and refines the best
+/// poses. The best three then pass through the drift on the clouds (as at most about `drift_points` clusters) and an
+/// ICP finish on all points. If both clouds have normals, they decide which side is up. With `settling_mm` the last
+/// step finds the pose together with a smooth displacement along the source's mean normal, so that a dip is not
+/// mistaken for a shift. The result is never a reflection; the source's mirror image is fitted too, and if it fits
+/// better, the outcome is Mirrored. Trust the transform only if `outcome` is Converged; `reasons` lists every
+/// objection. Same bits at any thread count.
+/// @param source, target  at least 1 point each, finite, any unit, the result's too; unit normals or none.
+/// @throws InvalidArgument for unusable clouds or settings. Sources: [Myronenko2010], [Alexa2022] (even rotations).
 [[nodiscard]] Registration register_clouds(const PointCloud& source, const PointCloud& target,
                                            const RegistrationSettings& settings, Workers& workers, Monitor& monitor);
 

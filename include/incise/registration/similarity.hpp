@@ -7,9 +7,9 @@
 
 namespace incise {
 
-/// T_target_source with scale: p_target = scale · rotation · p_source + translation. Never a reflection.
+/// Transform T_target_source with scale: p_target = scale · rotation · p_source + translation. Never a reflection.
 struct Similarity {
-  double scale = 1.0;
+  double scale = 1.0;                ///< > 0
   Mat3 rotation = Mat3::Identity();  ///< proper: determinant +1
   Vec3 translation_mm = Vec3::Zero();
 
@@ -21,24 +21,26 @@ inline void describe(Visitor& v, Similarity& t) {
   v({"translation_mm", "After scale and rotation.", "mm"}, t.translation_mm);
 }
 
-/// a after b: (a * b)(p) = a(b(p)).
+/// Returns a after b: (a * b)(p) = a(b(p)).
 [[nodiscard]] Similarity operator*(const Similarity& a, const Similarity& b);
+/// Returns the inverse transform. @throws InvalidArgument unless the scale is above 0.
 [[nodiscard]] Similarity inverse(const Similarity& t);
 
-/// 4 x 4, row-major when printed row by row; the upper left block holds scale times rotation.
+/// Returns the homogeneous 4 x 4 matrix: scale times rotation in the upper left block, translation in the last column.
 [[nodiscard]] Mat4 matrix_of(const Similarity& t);
 
-/// Every point mapped.
+/// Returns the transformed points, in their order.
 [[nodiscard]] Points moved(const Similarity& t, std::span<const Vec3> points);
 
-/// Angle between two rotations, degrees, [0, 180].
+/// Returns the angle between two rotations, degrees, [0, 180].
 [[nodiscard]] double angle_between_deg(const Mat3& a, const Mat3& b);
 
-/// Root mean square, mm, of how far a and b take the same points apart.
+/// Returns the root mean square distance, mm, between a(p) and b(p) over the points p; 0 without points.
 [[nodiscard]] double rms_difference_mm(const Similarity& a, const Similarity& b, std::span<const Vec3> points);
 
-/// The rotation by |v| radians about v (Rodrigues), and back: a vector of length at most pi.
+/// Returns the rotation by |v| radians about v (Rodrigues).
 [[nodiscard]] Mat3 rotation_of(const Vec3& v);
+/// Returns the rotation vector, rad, of length at most pi: the inverse of rotation_of.
 [[nodiscard]] Vec3 rotation_vector(const Mat3& rotation);
 
 }  // namespace incise

@@ -6,27 +6,29 @@
 
 namespace incise {
 
-/// A grid of speed and dullness as the paper's Table I has it.
+/// Scores on a grid of speed and dullness, as in the paper's Table I.
 struct ScoreGrid {
   std::vector<double> speeds_mm_s;  ///< ascending
   std::vector<double> dullnesses;   ///< ascending
   struct Cell {
     bool is_failure = false;
-    double score_percent = 0.0;            ///< 0 for a failure
-    std::optional<double> mean_signed_mm;  ///< of the mid-line; absent: nothing to measure
+    double score_percent = 0.0;            ///< registration score, per cent of the baseline; 0 for a failure
+    std::optional<double> mean_signed_mm;  ///< mean signed error of the mid-line; absent: nothing to measure
   };
-  std::vector<Cell> cells;            ///< speed by speed
-  std::optional<std::size_t> chosen;  ///< into cells
+  std::vector<Cell> cells;            ///< one per speed and dullness; the dullness varies fastest
+  std::optional<std::size_t> chosen;  ///< index into cells; absent: none was chosen
   bool is_virtual = false;
 };
 
-/// Table I as two heat maps: the score in per cent of the photographs, and the mean signed error. Failed cells are
-/// hatched, the chosen one is framed, every cell says its number. @throws InvalidArgument for a grid without cells, of
-/// another count than speeds times dullnesses, or numbers that are not finite.
+/// Draws Table I as two heat maps: the registration score, and the mean signed error of the mid-line. Speeds run
+/// downwards, dullness to the right. Failed cells are hatched, the others show their number, and a frame marks the
+/// chosen cell.
+/// @returns a complete SVG document. @throws InvalidArgument unless there is a cell for each pair of speed and
+/// dullness, `chosen` is one of them, and all scores and errors are finite.
 [[nodiscard]] std::string score_heat_map_svg(const ScoreGrid& grid);
 
-/// One specimen's signed error by direction from the tumour's middle, first entry at the start of the path, evenly
-/// round.
+/// One specimen's signed error in evenly spaced directions from the middle of the tumour edge, counter-clockwise from
+/// the start of the path.
 struct ProfileCurves {
   std::string name;
   std::vector<double> photographed_mm;
@@ -34,7 +36,7 @@ struct ProfileCurves {
   std::vector<double> simulated_mm;  ///< at the fitted values; empty: that cut left no ring
 };
 
-/// The marginal of one parameter.
+/// The marginal posterior density of one parameter.
 struct MarginalCurve {
   std::string label;           ///< with unit
   std::vector<double> values;  ///< ascending
@@ -42,8 +44,9 @@ struct MarginalCurve {
   double low = 0.0, high = 0.0;  ///< credible interval
 };
 
-/// Photographed and fitted errors of every specimen, and below them the marginals. @throws InvalidArgument without
-/// specimens, for lists of different length, or numbers that are not finite.
+/// Draws the photographed, fitted and simulated errors of every specimen, and below them the marginals.
+/// @returns a complete SVG document. @throws InvalidArgument without specimens, for lists of different length or of
+/// fewer than two values, or for a number that is not finite.
 [[nodiscard]] std::string drag_fit_svg(const std::vector<ProfileCurves>& specimens,
                                        const std::vector<MarginalCurve>& marginals, bool is_virtual);
 

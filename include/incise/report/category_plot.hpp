@@ -10,12 +10,12 @@ namespace incise {
 struct CategorySeries {
   std::string name;
   std::vector<double> values;
-  std::vector<double> low = {};       ///< lower ends of error bars; empty: none, else as many as values
-  std::vector<double> high = {};      ///< their upper ends, as many as lower ones
-  std::optional<double> chance = {};  ///< what a value without meaning would be: a dashed line
+  std::vector<double> low = {};       ///< lower ends of error bars; empty: no bars, else one per value
+  std::vector<double> high = {};      ///< upper ends of the error bars, one per lower end
+  std::optional<double> chance = {};  ///< value expected by chance, drawn as a dashed line
 };
 
-/// Series that share an axis, which begins at or includes 0.
+/// Series that share an axis. The axis starts at 0, or lower if a value is negative.
 struct CategoryPanel {
   std::string label;  ///< of the axis, with its unit
   std::vector<CategorySeries> series;
@@ -28,8 +28,8 @@ struct CategoryPlot {
   std::vector<CategoryPanel> panels;
 };
 
-/// A complete SVG document without a reference to anything outside. @throws InvalidArgument without categories, panels
-/// or series, for lengths that differ, and for a number that is not finite.
+/// Returns a complete SVG document without external references. @throws InvalidArgument without categories, panels or
+/// series, for lists of different length, and for a number that is not finite.
 [[nodiscard]] std::string category_plot_svg(const CategoryPlot& plot);
 
 }  // namespace incise

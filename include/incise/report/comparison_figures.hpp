@@ -12,24 +12,27 @@ struct ErrorSeries {
   std::string name;
   bool is_after = false;
   std::vector<double> signed_error_mm;  ///< at least one, finite
-  std::vector<double> clock_h;          ///< one for each error, [0, 12); empty: an open cut
+  std::vector<double> clock_h;          ///< one per error, [0, 12); empty: an open cut
 };
 
 /// Upper borders, in signed error, of the zones of the paper's Fig. 6.
 struct ZoneBorders {
   double positive_mm = -4.5;   ///< at or below: the tumour edge is reached
-  double too_close_mm = -2.3;  ///< at or below, and above the other: too little tissue
+  double too_close_mm = -2.3;  ///< at or below this, and above positive_mm: too little tissue is left
 };
 
-/// Box plots of absolute (a) and signed (b) errors, all points before and after and then each incision, with the failed
-/// and too-close zones; in (a) the zones hold for errors towards the tumour only, which the label says.
-/// @param zones  absent: none is drawn, where incisions differ in their target and so in their zones.
-/// @throws InvalidArgument without series or for a number that is not finite. Source: after [Paper, Fig. 6 a, b].
+/// Draws box plots of the absolute (a) and signed (b) errors: all points before, all points after, then each incision.
+/// Shaded zones mark where the tumour edge is reached and where too little tissue is left; in (a) they apply only to
+/// errors towards the tumour, and the key says so.
+/// @param zones  absent: no zones are drawn, as for incisions with different targets.
+/// @returns a complete SVG document. @throws InvalidArgument without series, for a series without errors, or for a
+/// number that is not finite. Source: after [Paper, Fig. 6 a, b].
 [[nodiscard]] std::string comparison_box_plot_svg(std::span<const ErrorSeries> series,
                                                   const std::optional<ZoneBorders>& zones = ZoneBorders{});
 
-/// Signed error against the place on a clock face over the tumour, 12 o'clock at both ends, with the same zones. Before
-/// is dashed. @throws as above; also if a series has no clock positions.
+/// Draws the signed error against the clock position, with 12 o'clock at both ends and the same zones. Curves before
+/// the change are dashed.
+/// @throws as comparison_box_plot_svg; also unless every error has a clock position in [0, 12).
 [[nodiscard]] std::string error_by_clock_svg(std::span<const ErrorSeries> series,
                                              const std::optional<ZoneBorders>& zones = ZoneBorders{});
 

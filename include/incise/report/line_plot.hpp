@@ -10,8 +10,8 @@ struct LineSeries {
   std::vector<double> x;
   std::vector<double> y;          ///< as many as x
   bool is_line = false;           ///< else one mark per point
-  std::vector<double> low = {};   ///< lower ends of error bars along y; empty: none, else as many as x
-  std::vector<double> high = {};  ///< their upper ends, as many as lower ones
+  std::vector<double> low = {};   ///< lower ends of error bars along y; empty: no bars, else one per x
+  std::vector<double> high = {};  ///< upper ends of the error bars, one per lower end
 };
 
 /// A plain x-y plot; labels carry the units.
@@ -24,8 +24,8 @@ struct LinePlot {
   std::vector<LineSeries> series;
 };
 
-/// A complete SVG document without a reference to anything outside. @throws InvalidArgument without points, for lengths
-/// that differ, and for a number that is not finite or, on a logarithmic axis, not positive.
+/// Returns a complete SVG document without external references. @throws InvalidArgument without points, for lists of
+/// different length, and for a number that is not finite or, on a logarithmic axis, not positive.
 [[nodiscard]] std::string line_plot_svg(const LinePlot& plot);
 
 }  // namespace incise

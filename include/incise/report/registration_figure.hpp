@@ -8,19 +8,20 @@
 
 namespace incise {
 
-/// What the picture of a registration shows.
+/// Content of a figure of a registration.
 struct RegistrationFigure {
   std::string title;
   std::string subtitle;
   Points target_mm;                  ///< grey
-  Points moved_source_mm;            ///< blue, where the transform lays it
-  std::vector<double> residuals_mm;  ///< distances along the normals
+  Points moved_source_mm;            ///< blue, moved by the transform
+  std::vector<double> residuals_mm;  ///< distances along the normals; empty: no histogram
   Vec3 approach = -Vec3::UnitZ();    ///< line of sight of the overlay
 };
 
-/// Both clouds seen along the approach, from the side below it, and a histogram of the residuals. At most 3000 points
-/// of each cloud are drawn, evenly chosen. A complete SVG document without a reference to anything outside.
-/// @throws InvalidArgument without points, or for a number that is not finite.
+/// Draws both clouds as seen along the approach and, below, from the side, and a histogram of the residuals. At most
+/// 3000 points of each cloud are drawn, evenly chosen.
+/// @returns a complete SVG document without external references. @throws InvalidArgument unless both clouds have
+/// points, or for a number that is not finite.
 [[nodiscard]] std::string registration_figure_svg(const RegistrationFigure& figure);
 
 }  // namespace incise

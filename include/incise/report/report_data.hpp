@@ -16,24 +16,23 @@
 #include <string>
 #include <vector>
 
-/// What a report shows. Everything is optional: an empty part becomes one sentence that says what is missing, so that a
-/// page can be made from any result folder. Every number has to be finite; coordinates are mm, LPS, in one and the same
-/// frame.
+/// Content of a report. Every part is optional: where one is empty, the page says in one sentence what is missing. So
+/// any result folder makes a page. Every number must be finite. Coordinates are in mm, LPS, all in the same frame.
 namespace incise {
 
 /// The scan that the tissue model was made from.
 struct CtPicture {
-  CtVolume ct;                    ///< cropped to what matters; no voxels: not shown
+  CtVolume ct;                    ///< cropped to the part of interest; no voxels: not shown
   GrayVolume occupancy;           ///< share of tissue in [0, 1], on any grid; outlined at 0.5. No voxels: no outline
   double window_low_hu = -160.0;  ///< shown black
   double window_high_hu = 240.0;  ///< shown white
-  std::string caption;            ///< where the scan is from
-  TriMesh tumor;                  ///< at rest, mm: its surface, or a band along its edge; no triangles: not drawn
-  bool tumor_is_surface = false;  ///< which of the two
+  std::string caption;            ///< origin of the scan
+  TriMesh tumor;                  ///< at rest, mm: the tumour's surface, or a band along its edge; no triangles: none
+  bool tumor_is_surface = false;  ///< false: `tumor` is the band
   TriMesh planned_cut;            ///< at rest, mm: the sheet from the planned path's entry points to its tips
 };
 
-/// 1 where a label is not 0, else 0: for CtPicture::occupancy.
+/// Returns 1 where a label is not 0, else 0: for CtPicture::occupancy.
 [[nodiscard]] GrayVolume occupancy_of(const LabelVolume& labels);
 
 /// Counts of values in bins of equal width.
@@ -45,7 +44,7 @@ struct ReportHistogram {
   std::vector<double> counts;  ///< one per bin, >= 0; empty: not shown
 };
 
-/// The tetrahedral mesh and how good it is.
+/// The tetrahedral mesh and its quality.
 struct MeshPicture {
   TetMesh mesh;  ///< at rest; no tets: not shown in 3D
   ReportHistogram dihedral_angles;
@@ -67,17 +66,17 @@ struct ReportFrame {
   double time_s = 0.0;
   std::string phase;                  ///< "rest", "stretched", "cutting", "done"
   Points positions_mm;                ///< of all mesh vertices
-  std::vector<Triangle> skin;         ///< of the tets that are left, counter-clockwise seen from outside
-  std::vector<std::uint8_t> is_kerf;  ///< per triangle of the skin: 1 where the cut laid it open
+  std::vector<Triangle> skin;         ///< of the live tets, counter-clockwise seen from outside
+  std::vector<std::uint8_t> is_kerf;  ///< per triangle of the skin: 1 where the cut exposed it
   std::optional<Vec3> tool_tip_mm;    ///< none: the needle is not shown
   Vec3 tool_axis = -Vec3::UnitZ();    ///< unit; points from the holder to the tip
 };
 
-/// A frame without time and tool: the skin of the tets that are left. A face is of the kerf where it is not on the
-/// uncut body's skin.
-/// @param on_skin    per tet: bit f is set where face f is on that skin (skin_faces).
-/// @param positions  N x 3, mm.  @param is_live  per tet; empty: all.  @throws InvalidArgument if a length does not fit
-/// the mesh.
+/// Returns a frame without time and tool: the skin of the live tets. A face belongs to the kerf if it is not on the
+/// skin of the uncut body.
+/// @param on_skin  per tet: bit f is set where face f is on the skin of the uncut body (skin_faces).
+/// @param positions  N x 3, mm. @param is_live  per tet; empty: all are live.
+/// @throws InvalidArgument if a length does not fit the mesh.
 [[nodiscard]] ReportFrame frame_of(const TetMesh& mesh, std::span<const std::uint8_t> on_skin, Points positions,
                                    std::span<const std::uint8_t> is_live);
 
@@ -88,31 +87,31 @@ struct ReportAnimation {
   std::vector<ReportLine> lines;    ///< in the stretched tissue before the cut
   double tool_diameter_mm = 1.0;
   double tool_length_mm = 25.0;
-  std::optional<Vec3> platform_point_mm;  ///< a point of the plane that the tissue lies on; none: not shown
+  std::optional<Vec3> platform_point_mm;  ///< a point of the plane on which the tissue lies; none: not shown
   Vec3 platform_normal = Vec3::UnitZ();   ///< unit; towards the tissue
 };
 
-/// One incision as it was measured: before or after compensation.
+/// One measured incision: before or after compensation.
 struct ReportIncision {
   std::string name;  ///< "Before", "After"
   Outcome outcome = Outcome::Success;
-  Verdict verdict;                      ///< of this cut: a success that something argues against is not shown as good
+  Verdict verdict;                      ///< of this cut: a success with a reason against it is not shown as good
   std::optional<bool> closed_loop;      ///< none for an open cut
-  std::optional<bool> negative_margin;  ///< the cut keeps clear of the tumour edge; none: not known
-  /// The three numbers on the page's first screen; absent: not measured.
-  std::optional<double> nearest_to_tumor_mm;  ///< least tissue between kerf and tumour; negative: the kerf enters it
-  std::optional<double> least_depth_mm;       ///< of the kerf, along the path
-  std::optional<double> greatest_error_mm;    ///< of the absolute errors
+  std::optional<bool> negative_margin;  ///< true: the cut keeps clear of the tumour edge; none: not known
+  /// The three numbers on the first screen of the page; absent: not measured.
+  std::optional<double> nearest_to_tumor_mm;  ///< least distance of the kerf from the tumour; negative: it enters it
+  std::optional<double> least_depth_mm;       ///< least depth of the kerf along the path
+  std::optional<double> greatest_error_mm;    ///< greatest absolute error
   double mean_abs_error_mm = 0.0;
-  double target_mm = 5.0;        ///< the distance to the tumour edge that was aimed at
+  double target_mm = 5.0;        ///< intended distance from the tumour edge
   double close_margin_mm = kCloseMarginMm;  ///< less tissue than this counts as too close
-  double kerf_allowance_mm = 0.0;  ///< how much nearer to the tumour the kerf's edge is than this contour: the electrode's radius for a mid-line
-  std::string measured_contour;  ///< "kerf mid-line": what the errors belong to
+  double kerf_allowance_mm = 0.0;  ///< from this contour to the kerf's edge: the tool's radius for a mid-line, else 0
+  std::string measured_contour;  ///< contour to which the errors belong: "kerf mid-line"
   Contour tumor_edge;
   Contour intended_path;
-  Contour corrected_path;  ///< empty: none was made
+  Contour corrected_path;  ///< empty: there is none
 
-  /// The signed errors below which too little tissue, and none, is left beside the tumour.
+  /// Signed errors, mm, at or below which too little tissue is left beside the tumour, and none.
   [[nodiscard]] double close_error_mm() const { return close_margin_mm + kerf_allowance_mm - target_mm; }
   [[nodiscard]] double reached_error_mm() const { return kerf_allowance_mm - target_mm; }
   Contour incision;
@@ -128,8 +127,8 @@ struct ReportStage {
   std::string name, state;
   double wall_s = 0.0;
 };
-/// One safety check of the robot program: `value` has to be on the side of `limit` that `relation` says ("<=", ">="); without
-/// a relation the check is a plain yes or no.
+/// One safety check of the robot program: `value` passes on the side of `limit` that `relation` states ("<=", ">=").
+/// Without a relation the check is a plain yes or no.
 struct ReportCheck {
   std::string name, unit;
   double value = 0.0;
@@ -144,7 +143,7 @@ struct ReportNotice {
   Severity severity = Severity::Notice;
   std::string text;
 };
-/// A file beside the page, by its path relative to the page.
+/// A file beside the page. Its path is relative to the page.
 struct ReportFile {
   std::string path, meaning;
 };
@@ -154,7 +153,7 @@ struct ReportPicture {
   std::vector<std::string> svgs;  ///< complete SVG documents, shown side by side
   std::vector<ReportValue> values;
 };
-/// Any other table; units belong into the column names.
+/// Any other table. Column names contain the units.
 struct ReportTable {
   std::string title;
   std::vector<std::string> columns;
@@ -164,16 +163,16 @@ struct ReportTable {
 struct ReportData {
   std::string title = "Simulated incision";
   std::string subtitle;
-  std::optional<Verdict> verdict;  ///< in the page's first line; absent: not judged
+  std::optional<Verdict> verdict;  ///< in the first line of the page; absent: not judged
   std::string virtual_notice;      ///< not empty: shown as a banner above everything ("Virtual specimen: …")
-  Vec3 approach = -Vec3::UnitZ();  ///< the direction in which the camera and the tool look at the tissue
-  /// What the ends of the axes are called: -x, +x, -y, +y, -z, +z.
+  Vec3 approach = -Vec3::UnitZ();  ///< direction in which camera and tool look at the tissue
+  /// Names of the ends of the axes: -x, +x, -y, +y, -z, +z.
   std::array<std::string, 6> axis_names{"R", "L", "A", "P", "I", "S"};
   CtPicture ct;
   MeshPicture mesh;
   std::vector<ReportAnimation> animations;
-  std::vector<ReportIncision> incisions;  ///< in the order in which they were made: before, after
-  std::vector<std::string> remarks;  ///< sentences on them: why there is none after, why the path was moved as it was
+  std::vector<ReportIncision> incisions;  ///< in the order in which they were cut: before, after
+  std::vector<std::string> remarks;  ///< sentences on the incisions: why there is none after, why the path was moved
   std::vector<ReportMeasure> evaluation;
   std::vector<LinePlot> kerf_plots;       ///< depth, lag and drift along the path
   std::vector<std::string> kerf_figures;  ///< complete SVG documents
@@ -183,25 +182,25 @@ struct ReportData {
   std::vector<ReportStage> stages;
   std::vector<ReportValue> program;  ///< summary of the robot program
   std::vector<ReportCheck> checks;
-  std::vector<ReportPicture> on_tissue;  ///< registration with the measured tissue, and the program that was laid onto it
-  std::string pictures_heading = "On the measured tissue";  ///< of the section with them
-  bool is_of_a_study = true;             ///< false: sections of a study that this is no report of are left out
+  std::vector<ReportPicture> on_tissue;  ///< registration with the measured tissue, and the program on it
+  std::string pictures_heading = "On the measured tissue";  ///< heading of the section with these pictures
+  bool is_of_a_study = true;             ///< false: no run is reported, and its sections are left out
   std::string program_figure;           ///< a complete SVG document: the program as the player ran it
-  std::vector<ReportValue> replay;      ///< numbers of that
+  std::vector<ReportValue> replay;      ///< numbers of the replay
   std::string program_text;             ///< the program, or its beginning
   std::vector<ReportTable> tables;      ///< calibration and others
   std::vector<ReportValue> settings;    ///< all settings, flattened: "cut.speed_mm_s"
   std::vector<ReportValue> provenance;  ///< version, commit, command, seed, threads, machine, hashes
   std::vector<ReportFile> files;
   std::vector<ReportNotice> notices;  ///< findings of this run; listed with the verdict's reasons, worst first
-  std::vector<std::string> caveats;   ///< what holds for every run like this one, in sentences; listed by themselves
+  std::vector<std::string> caveats;   ///< sentences that hold for every run like this one; listed separately
 };
 
-/// The incisions that have a contour to draw.
+/// Returns the incisions that have a contour of at least two points.
 [[nodiscard]] std::vector<ReportIncision> drawn_incisions(const ReportData& data);
 
-/// Everything that keeps `data` from being reported, in words: numbers that are not finite, indices out of range, lists
-/// of unequal length, a zero direction. Empty: html_report accepts it.
+/// Returns every problem that keeps `data` from being reported, in words: numbers that are not finite, indices out of
+/// range, lists of unequal length, a zero direction. Plots are not checked here, but when they are drawn.
 [[nodiscard]] std::vector<std::string> find_problems(const ReportData& data);
 
 }  // namespace incise

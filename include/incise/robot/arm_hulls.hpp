@@ -15,7 +15,7 @@ struct Capsule {
   double radius_mm = 0.0;
 };
 
-/// The round hulls of the arm and of what it holds, from the base to the tip.
+/// The capsules of the arm and of its instrument, from the base to the tip.
 ///
 ///     upper_arm   elbow     forearm
 ///       ||=========||          shoulder: from the base's axis out to the upper arm
@@ -36,13 +36,14 @@ struct Instrument {
   double needle_length_mm = CheckSettings{}.needle_length_mm;
   double needle_radius_mm = CheckSettings{}.needle_radius_mm;
   double shaft_radius_mm = CheckSettings{}.shaft_radius_mm;
-  /// Whether the flange sits on the straight needle itself: nothing of the tool lies behind it.
+  /// Whether the needle runs straight to the flange, without a shaft behind it.
   [[nodiscard]] bool is_needle_alone() const;
 };
 
 using Hulls = std::array<Capsule, kHullCount>;
-/// The hulls at these joints. The base's column begins on the table, or at the base's foot if that lies lower. The
-/// shaft of a tool that is a needle alone is a piece of the needle.
+/// Returns the hulls at joints `q`, base frame, mm. The base's column begins on the table, or at the base's foot if
+/// that is lower. If the tool is only a needle, the needle's hull ends at the flange and the shaft's hull has its
+/// radius.
 [[nodiscard]] Hulls hulls_at(const ArmModel& arm, const Joints& q, const Instrument& instrument, double table_z_mm);
 
 }  // namespace incise

@@ -12,7 +12,7 @@
 
 namespace incise {
 
-/// What is known of the registration that put the path into the robot's frame.
+/// Quality of the registration that transformed the path into the robot's frame.
 struct RegistrationSummary {
   double scale = 1.0;  ///< between the clouds as the sensors gave them
   double rmse_mm = 0.0;
@@ -20,7 +20,7 @@ struct RegistrationSummary {
   bool is_converged = true;
 };
 
-/// Limits that a program is held to before it may be written for a robot.
+/// Limits that a program must keep before it may be written for a robot.
 struct CheckSettings {
   bool must_be_ring = true;     ///< the plan is a ring (plan.kind: ring), so the path has to be closed
   double min_speed_mm_s = 0.5;  ///< of the tip in the tissue
@@ -28,17 +28,18 @@ struct CheckSettings {
   double planned_depth_mm = kPlannedDepthMm;
   double depth_tolerance_mm = 0.5;
   double close_margin_mm = kCloseMarginMm;  ///< least distance of the path from the tumour edge, on its outside
-  /// Neighbouring waypoints of a ring lie no farther apart than this many medians of these ways, or `max_gap_mm` …
+  /// Greatest distance between neighbouring waypoints of a ring, in medians of these distances. The limit is this or
+  /// `max_gap_mm`, whichever is more.
   double max_gap_ratio = 4.0;
-  double max_gap_mm = 2.0;  ///< … whichever is more
-  /// Most that the tumour edge lies above or below the ring: beyond it the two are of different places.
+  double max_gap_mm = 2.0;
+  /// Greatest height of the tumour edge above or below the ring: beyond it, the two do not belong together.
   double max_edge_height_mm = 20.0;
   double max_tilt_deg = 80.0;            ///< of the tool from straight down
   double tool_table_clearance_mm = 1.0;  ///< least height of tip and shaft above the table
-  double max_deviation_mm = 4.0;         ///< of the path from the intended one: more than any correction should ask for
+  double max_deviation_mm = 4.0;         ///< of the path from the intended one: more than any correction should need
 
-  // Marking: in the place of the limits above.
-  double mark_distance_mm = 0.3;  ///< most that a mark leaves the tumour edge by
+  // Marks, instead of the limits above.
+  double mark_distance_mm = 0.3;  ///< greatest distance of a mark from the tumour edge, and of the edge from the mark
   double mark_depth_mm = 1.0;
   double mark_depth_tolerance_mm = 0.3;
   double mark_speed_mm_s = 2.0;
@@ -47,12 +48,12 @@ struct CheckSettings {
   // The arm.
   double min_singular_value = 0.03;            ///< see smallest_singular_value
   double joint_margin_deg = 5.0;               ///< kept from the joints' limits
-  double joint_speed_share = 0.5;              ///< of what the maker allows
-  double max_joint_acceleration_rad_s2 = 5.0;  ///< the maker publishes none; his own programs' default is 1.4
+  double joint_speed_share = 0.5;              ///< of the maker's limit
+  double max_joint_acceleration_rad_s2 = 5.0;  ///< the maker publishes none; the default in its programs is 1.4
   double table_clearance_mm = 20.0;            ///< of the links' hulls
   double arm_clearance_mm = 10.0;              ///< of the hulls of arm and instrument from each other and from the base
   double surface_clearance_mm = 10.0;          ///< of the arm's hulls from the tissue
-  double tip_speed_tolerance = 0.01;           ///< as a share of the speed, away from the ends
+  double tip_speed_tolerance = 0.01;           ///< as a share of the nominal speed, away from ends and changes
   double max_chord_error_mm = 0.02;            ///< of the moves and their blends from the smooth course
 
   // The instrument: a needle, then a shaft up to the flange.
@@ -60,7 +61,7 @@ struct CheckSettings {
   double needle_radius_mm = 0.5;
   double shaft_radius_mm = 5.0;
   double shaft_clearance_mm = 1.0;
-  double needle_clearance_mm = 1.0;  ///< of the needle above the place where it enters
+  double needle_clearance_mm = 1.0;  ///< of the needle from the tissue, except near its entry
 
   double min_power_w = 10.0, max_power_w = 60.0;
 
@@ -69,29 +70,29 @@ struct CheckSettings {
   double min_inlier_fraction = 0.5;
 };
 
-/// What a program is held against, as far as it is known.
+/// Data that some checks need, as far as it is available. The caller keeps ownership of the pointers.
 struct CheckInputs {
   const ToolPath* intended = nullptr;  ///< the path before correction, in the robot's frame
-  const TriMesh* surface = nullptr;    ///< the tissue in the robot's frame, mm; a cloud is a mesh without triangles
+  const TriMesh* surface = nullptr;    ///< the tissue's surface, robot frame, mm; a cloud is a mesh without triangles
   std::optional<double> power_w{};
-  std::optional<double> heat_half_width_mm{};  ///< how far beside the needle heat damages tissue
+  std::optional<double> heat_half_width_mm{};  ///< distance beside the needle to which heat damages tissue
   std::optional<RegistrationSummary> registration{};
 };
 
-/// One named check: passed when `value` keeps to `limit` as `relation` says, or, without a relation, when `text` is
-/// true.
+/// Result of one named check. It is passed if `value` `relation` `limit` holds. A check without a relation is a yes or
+/// no: `value` is 1 if `text` is true, otherwise 0, and `limit` is 1.
 struct ProgramCheck {
   std::string name;
   bool passed = false;
   double value = 0.0;
   double limit = 0.0;
-  std::string relation = "<=";            ///< "<=", ">=", "<", ">", or empty for a plain yes or no
-  std::string unit;                       ///< mm, mm/s or empty
-  std::optional<std::size_t> pose;        ///< the worst pose of the program, where there is one
-  std::string text;                       ///< for a person
-  std::optional<std::size_t> waypoint{};  ///< of the path, at or before that pose
-  bool is_overridden = false;             ///< a person has taken it on them
-  /// "margin: 1.83 mm at waypoint 12 (pose 20), has to be >= 2.2 mm: least distance of …"
+  std::string relation = "<=";            ///< "<=", ">=", "<", ">", or empty for a yes or no
+  std::string unit;                       ///< of value and limit: mm, mm/s, deg, rad/s2, W, or empty
+  std::optional<std::size_t> pose;        ///< index of the worst pose of the program, if any
+  std::string text;                       ///< meaning of the check, for a person
+  std::optional<std::size_t> waypoint{};  ///< index of the path's waypoint at or before that pose
+  bool is_overridden = false;             ///< a person has taken responsibility for the failed check
+  /// Returns one sentence: "margin: 1.83 mm at waypoint 12 (pose 20), has to be >= 2.2 mm: least distance of …".
   [[nodiscard]] std::string message() const;
 };
 inline void describe(Visitor& v, ProgramCheck& c) {
@@ -109,73 +110,77 @@ inline void describe(Visitor& v, ProgramCheck& c) {
 
 struct ProgramChecks {
   std::vector<ProgramCheck> checks;
-  std::vector<std::string> not_made;  ///< what nobody has looked at: read it before a robot moves
-  CheckSettings settings{};           ///< that they were made with
+  std::vector<std::string> not_made;  ///< what was not checked, and why: read it before a robot moves
+  CheckSettings settings{};           ///< the limits that were used
 };
 
-/// Checks a program and the path that it came from. Names of the checks, in this order:
+/// Checks a program and the path that it was made from. The checks, in this order:
 /// - `finite`: every number of the program is finite; if not, no other check is made
 /// - `frame`: the path is given in the robot's base frame
 /// - `closed` (rings): the path is closed and the cut ends where it began, to 0.01 mm
-/// - `gap` (rings): no two neighbouring waypoints lie far apart, which takes evenly spaced ones for granted
-/// - `self_crossing`: the entry course crosses itself nowhere, seen along the mean axis
-/// - `speed_min`, `speed_max`: nominal tip speed while cutting; a mark: within its tolerance of 2 mm/s
-/// - `depth`: that planned within the tolerance, everywhere: below the surface if one is given, else as the path says
-/// - `margin` (incisions): the needle keeps `close_margin_mm` outside the tumour edge where it enters, and its tip does
-///   so too, seen along the mean axis. A ring without an edge fails, and so does an edge that crosses itself
-///   in that view, one that is open, and one without area; only an open cut may have no edge at all
-/// - `heat` (incisions; if the half width is given): it keeps farther from the edge than heat reaches
-/// - `encloses` (rings, incisions): the ring goes round the tumour edge and lies at its height: its worst point is
-/// named
-/// - `edge_distance` (marks): neither the entry course nor the tumour edge leaves the other by more than
-///   `mark_distance_mm`
-/// - `deviation` (with an intended path): neither course is farther than `max_deviation_mm` from the other
+/// - `gap` (rings): no two neighbouring waypoints lie far apart; assumes that waypoints are evenly spaced
+/// - `self_crossing`: the line of the entry points does not cross itself, seen along the mean axis
+/// - `speed_min`, `speed_max`: nominal tip speed along the cut; of a mark: within the tolerance of `mark_speed_mm_s`
+/// - `depth`: everywhere the planned depth, within the tolerance; measured below the surface if one is given, otherwise
+///   taken from the path
+/// - `margin` (incisions): the needle stays at least `close_margin_mm` outside the tumour edge, at its entry and, seen
+///   along the mean axis, at its tip. A ring without an edge fails. So does an edge that is open, has no area or
+///   crosses itself in that view. Only an open cut may have no edge
+/// - `heat` (incisions; if the half width is given): the needle stays at least that half width outside the edge
+/// - `encloses` (rings, incisions): the ring encloses the tumour edge and lies near its height; the text gives the
+///   edge's worst point
+/// - `edge_distance` (marks): no entry point is farther than `mark_distance_mm` from the tumour edge, and no point of
+///   the edge is farther than that from the mark
+/// - `deviation` (with an intended path): neither path is anywhere farther than `max_deviation_mm` from the other
 /// - `chord_error`: straight moves and their blends stay near the smooth course
 /// - `tilt`: the tool comes from above
 /// - `tool_table`: tip and shaft stay above the table's plane
-/// - `reach`: the arm reaches every pose on one branch, without a jump; if not, no check of joints is made
+/// - `reach`: the arm reaches every pose on one branch, without a jump; if not, no other check of the arm is made
 /// - `joint_limits`, `joint_speed`, `joint_acceleration`, `singularity`: of the arm's motion
-/// - `tip_speed`: the tip's speed, from the joints, is the nominal one away from the ends
+/// - `tip_speed`: the tip's speed, computed from the joints, is the nominal one away from ends and changes of speed
 /// - `table`: the links stay clear of the table's plane
 /// - `self_collision`: the hulls of the arm's links and of the instrument stay clear of each other
 /// - `base`: they stay clear of the base's column and of the shoulder
-/// - `surface_collision` (with a surface): the arm's hulls, flange included, stay clear of it
-/// - `shaft` (with a surface): the instrument, straight from its needle's upper end to the flange, stays clear of it
-/// - `needle` (with a surface): so does the needle: all of it on the way through the air, and in the tissue what lies
-///   higher than the clearance (ProgramSettings::clearance_mm) above the entry
+/// - `surface_collision` (with a surface): the arm's hulls, flange included, stay clear of the tissue
+/// - `shaft` (with a surface, and unless the tool is only a needle): the shaft, straight from the needle's upper end to
+///   the flange, stays clear of the tissue
+/// - `needle` (with a surface): in the air the whole needle stays clear of the tissue; in the tissue, the part higher
+///   than ProgramSettings::clearance_mm above the entry
 ///
-/// The last five look at the whole motion, from the first approach to the end of the retreat, and between its samples:
-/// their values are least distances, less what the hulls can move by in half a period.
+/// The last five cover the whole motion, from the first approach to the end of the retreat. They also cover the time
+/// between samples: their values are least distances, minus the distance that the hulls can move in half a period.
 ///
 /// - `power` (if given): within the generator's usual range for cutting
 /// - `registration_scale`, `registration_rmse`, `registration_inliers`, `registration_converged` (if given)
 ///
-/// Forces, the electrode's switching, cables, other things in the room and how well the controller keeps to its path
-/// are **not** checked; `not_made` lists them, together with checks that lack their input.
+/// Forces, the switching of the electrode, cables, other objects in the room and the controller's accuracy are **not**
+/// checked; `not_made` lists them, together with checks whose input is missing.
+/// @throws InvalidArgument if the program has no cut, or if the intended path is in another frame than `path`.
 [[nodiscard]] ProgramChecks check_program(const RobotProgram& program, const ToolPath& path,
                                           const CheckSettings& settings = {}, const CheckInputs& inputs = {});
 
-/// The longest way between neighbouring waypoints of a ring, and the most that the check `gap` lets pass.
+/// The longest gap between neighbouring waypoints of a ring, and the limit of the check `gap`.
 struct WaypointGap {
   double longest_mm = 0.0;
   double limit_mm = 0.0;
-  std::size_t after = 0;  ///< the waypoint before it
+  std::size_t after = 0;  ///< index of the waypoint before the gap
 };
-/// @pre at least one waypoint.
+/// Finds the longest gap; the path is taken as closed. @throws InvalidArgument without waypoints.
 [[nodiscard]] WaypointGap widest_gap(const ToolPath& path, const CheckSettings& settings = {});
 
-/// Angle of a tool's axis (unit, into the tissue) from straight down, degrees; what the check `tilt` looks at.
+/// Returns the angle, degrees, between a tool's axis (unit, into the tissue, base frame) and straight down; see the
+/// check `tilt`.
 [[nodiscard]] double tilt_deg(const Vec3& axis);
 
-/// Every name that check_program may give.
+/// Returns the names of all checks of check_program, in order.
 [[nodiscard]] std::span<const char* const> check_names();
 
-/// Whether a person may take a failed check on them. Not `finite` and `frame`, whose program would be nonsense, not
-/// `reach`, without which there is no motion to write, and not `margin`: a cut that comes near the tumour is refused.
-/// Who plans a smaller margin says so by CheckLimits::close_margin_mm, which the program states.
+/// Returns whether a person may override a failed check of this name. False for `finite` and `frame` (the program would
+/// be meaningless), for `reach` (there is no motion to write), for `margin` (a cut near the tumour is refused) and for
+/// unknown names. To plan a smaller margin, set CheckSettings::close_margin_mm; the program's header states it.
 [[nodiscard]] bool can_be_overridden(const std::string& check);
 
-/// Marks failed checks of these names as overridden. @pre known names that can be overridden (InvalidArgument).
+/// Marks failed checks of these names as overridden. @throws InvalidArgument for a name that cannot be overridden.
 void override_checks(ProgramChecks& checks, const std::vector<std::string>& names);
 
 }  // namespace incise

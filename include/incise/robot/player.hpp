@@ -11,13 +11,13 @@
 
 namespace incise {
 
-/// How a program is played.
+/// Settings and limits of the player.
 struct PlayerSettings {
   double speed_slider = 1.0;
   double cycle_s = 0.002;
   double end_zone_mm = 2.0;
   double max_deviation_mm = 1.0;
-  // Of a program that says which path it was made for and how, on its own course.
+  // Limits for a program whose header gives its path and settings, along the course of that path.
   double max_lean_deg = 2.0;
   double speed_tolerance = 0.05;
   double max_way_back_mm = 0.2;
@@ -41,24 +41,26 @@ inline void describe(Visitor& v, PlayerSettings& s) {
     s.max_rest_s, kPositive);
 }
 
+/// How a replay ended. With StartsInTissue, EndsInTissue and all outcomes from JointSpeed on, the program ran to its
+/// end; the other failures ended it early.
 enum class ReplayOutcome {
   Completed,
   Unreachable,     ///< a pose of a straight or blended move cannot be reached
   Jump,            ///< a joint would have to jump: the move crosses a singularity
-  BlendsOverlap,   ///< two blends of a move are longer together than the way between their poses
+  BlendsOverlap,   ///< two blends of a move are together longer than the distance between their poses
   JointLimits,     ///< a joint is sent beyond its limits
-  StartsInTissue,  ///< it runs to its end, but its first tip lies below the surface: the way there goes through tissue
-  EndsInTissue,    ///< it runs to its end, and leaves the tip below the surface
+  StartsInTissue,  ///< the first tip position lies below the surface: the way to it leads through tissue
+  EndsInTissue,    ///< the last tip position lies below the surface
   TooLong,         ///< it would take longer than kLongestProgramS
-  JointSpeed,      ///< it runs to its end, but a joint is sent faster than it can turn
-  OffCourse,       ///< it runs to its end, but the tip leaves the intended course by more than `max_deviation_mm`
-  WrongAxis,       ///< … but the tool leans from the intended axis
-  WrongOrder,      ///< … but it goes back on its course, or leaves its beginning or end out
-  WrongSpeed,      ///< … but the tip, or a move's acceleration, is faster than intended, or slower in the cut
-  RestsInTissue,   ///< … but the tip rests in the tissue
-  BreaksLimit,     ///< … but the arm comes too near to the table, its base, itself, a joint's limit or a singularity
-  Altered,         ///< … but it is not the program that was checked: its digest differs
-  FalseChecks      ///< … but its header tells of checks that come out otherwise when they are made again
+  JointSpeed,      ///< a joint is sent faster than it can turn
+  OffCourse,       ///< the tip leaves the intended course by more than `max_deviation_mm`
+  WrongAxis,       ///< the tool leans too far from the intended axis
+  WrongOrder,      ///< the tip goes back on its course, or omits its beginning or end
+  WrongSpeed,      ///< the tip is faster than intended, or slower in the cut, or a move has too much acceleration
+  RestsInTissue,   ///< the tip rests in the tissue for longer than intended
+  BreaksLimit,     ///< the arm comes too near to the table, its base, itself, a joint's limit or a singularity
+  Altered,         ///< it is not the program that was checked: its digest differs
+  FalseChecks      ///< its header contradicts the checks that are computed again
 };
 inline constexpr std::array<std::string_view, 17> kReplayOutcomeNames{
     "completed",      "unreachable",     "jump",         "blends_overlap", "joint_limits", "starts_in_tissue",
@@ -68,14 +70,14 @@ inline constexpr std::array<std::string_view, 17> kReplayOutcomeNames{
   return kReplayOutcomeNames;
 }
 
-/// The arm in one cycle.
+/// The arm at the end of one cycle; points and directions in the base frame.
 struct ReplaySample {
   double time_s = 0.0;
   Joints q_rad = Joints::Zero();
   Vec3 tip_mm = Vec3::Zero();
-  Vec3 axis = -Vec3::UnitZ();   ///< of the tool, out of its tip
-  double tip_speed_mm_s = 0.0;  ///< over the cycle before
-  double deviation_mm = 0.0;    ///< distance of the tip from the intended course; 0 where none is known
+  Vec3 axis = -Vec3::UnitZ();   ///< of the tool, unit, out of its tip
+  double tip_speed_mm_s = 0.0;  ///< mean over the previous cycle
+  double deviation_mm = 0.0;    ///< distance of the tip from the intended course; 0 if none is known
   ProgramPhase phase = ProgramPhase::Approach;
 };
 
@@ -98,40 +100,43 @@ inline void describe(Visitor& v, SpeedNumbers& n) {
   v("max", n.max, "Greatest.");
 }
 
-/// What the arm would do.
+/// Result of playing a program: the arm's simulated motion and how well it follows the intended course.
 struct [[nodiscard]] Replay {
   ReplayOutcome outcome = ReplayOutcome::Completed;
-  std::size_t line = 0;  ///< of the program, where it ended too early or asks for too much; 0: at no line
-  std::string reason;    ///< what was found, for a person, where the outcome alone does not say it
+  std::size_t line = 0;  ///< line of the program that ends the replay early or demands too much; 0 if none
+  std::string reason;    ///< for a person; empty if the outcome needs no explanation
   std::vector<ReplaySample> samples;
   Points intended_mm;  ///< the intended course of the tip as a fine polyline: plunge, cut with overlap, exit
-  double max_deviation_mm = 0.0;
-  double max_cut_deviation_mm = 0.0;  ///< in the cut; of a program without one: over all of it
+  double max_deviation_mm = 0.0;      ///< of the tip from the intended course, over the whole program
+  double max_cut_deviation_mm = 0.0;  ///< in the cut; for a program without a cut, over the whole program
   double mean_deviation_mm = 0.0;     ///< in the cut
   double max_deviation_at_s = 0.0;
-  SpeedNumbers tip_speed_mm_s;  ///< in the cut, away from its ends
-  double max_joint_speed_share = 0.0;
-  double min_singular_value = 0.0;
-  PlayerSettings settings;  ///< that it was played with
+  SpeedNumbers tip_speed_mm_s;         ///< in the cut, away from its ends
+  double max_joint_speed_share = 0.0;  ///< of the joint's greatest speed
+  double min_singular_value = 0.0;     ///< see smallest_singular_value
+  PlayerSettings settings;             ///< the settings that were used
   [[nodiscard]] double duration_s() const { return samples.empty() ? 0.0 : samples.back().time_s; }
 };
 void describe(Visitor& v, Replay& r);
 
-/// Runs a program through our own kinematics and a model of the controller (docs/models/robot.md), cycle by cycle:
-/// - movej: the program begins where it ends; the way there is not played
-/// - movel, movep: straight between poses, round corners by the circle that touches both sides at the blend radius;
-/// acceleration and
-///   speed as given (trapezoid); joints by the inverse, near to the last ones. The slider slows time: the path stays
+/// Plays a program cycle by cycle through incise's kinematics and a model of the controller (docs/models/robot.md):
+/// - movej: not played; the replay begins at its end
+/// - movel, movep: straight between poses; at a blended corner, the circle that touches both sides at the blend radius.
+///   Speed and acceleration as given (trapezoid). Joints: the solution of inverse_kinematics nearest to the previous
+///   joints. The slider slows time; the path stays the same
 /// - servoj: each joint follows its target as q'' = gain (q_target - q - lookahead q'). The slider slows the arm, not
-/// the stream
-/// - a timed list of joints: cubic between rows with their speeds. The slider slows time
-/// @param intended  the path that the tip should follow, frame robot; by default the one in the program's header.
-/// Without either
-///   deviations are 0 and intended_mm is empty.
-/// A program that says in its header which path it was made for and how is held to that in every phase, the way through
-/// the air included: place, axis, order, speed, rests, and the limits of the arm's checks. With `intended`, the cut is
-/// held to it as well. Where a program that runs to its end has several faults, the outcome is the first in the order
-/// of ReplayOutcome's list from StartsInTissue on, joint speed before the course.
+///   the stream
+/// - a timed list of joints: cubic between rows, with the rows' speeds. The slider slows time
+///
+/// The tip's position in the cut is compared with `intended`. If the program's header gives the path and settings that
+/// the program was made with, position, axis, order, speed and rests are also compared with that path's course, in
+/// every phase, the way through the air included. The motion must also keep the limits of the arm's checks: those in
+/// the header, otherwise the defaults. If a program that runs to its end has several faults, the outcome is the first
+/// of them in the order of ReplayOutcome. `play` does not check the digest or the header's statements; see judge_audit.
+/// @param intended  the path that the tip should follow, frame robot; by default the path in the program's header.
+///   Without either, deviations are 0 and `intended_mm` is empty.
+/// @throws InvalidArgument for settings out of range, or a program with fewer than 2 commands and fewer than 2 rows of
+/// joints.
 [[nodiscard]] Replay play(const WrittenProgram& program, const ArmModel& arm = ur10e(),
                           const PlayerSettings& settings = {}, const ToolPath* intended = nullptr);
 

@@ -15,12 +15,12 @@
 
 namespace incise {
 
-/// What the tool does on its way *to* a pose.
+/// Phase of a program. A pose has the phase of the move that ends at it.
 enum class ProgramPhase {
   Approach,  ///< through the air, towards the entry
   Plunge,    ///< along the axis into the tissue
   Cut,       ///< along the path
-  Overlap,   ///< along the first part of a closed path once more
+  Overlap,   ///< along the first part of a closed path again
   Dwell,     ///< rest at the end of the cut
   Exit,      ///< back out along the axis
   Retreat    ///< away through the air
@@ -34,7 +34,7 @@ inline constexpr std::array<std::string_view, 7> kProgramPhaseNames{"approach", 
 /// Longest overlap, clearance, approach height or depth of a program, mm: the arm reaches no farther than 1300.
 inline constexpr double kLargestLengthMm = 1000.0;
 
-/// How a path becomes a program.
+/// Settings of make_program.
 struct ProgramSettings {
   double approach_height_mm = 30.0;
   double clearance_mm = 5.0;
@@ -69,11 +69,12 @@ inline void describe(Visitor& v, ProgramSettings& s) {
      "deg"},
     s.spin_deg);
 }
-/// Longest that a program may take. The paper's ring takes half a minute; more than two hours is a mistaken unit.
+/// Greatest duration of a program. The paper's ring takes half a minute; more than two hours indicates a wrong unit.
 inline constexpr double kLongestProgramS = 2.0 * 3600.0;
-/// Farthest coordinate of a waypoint, mm: what lies beyond is no place near an arm, and its square may overflow.
+/// Greatest coordinate of a waypoint, mm: no place near an arm lies beyond it, and squares of larger numbers may
+/// overflow.
 inline constexpr double kFarthestPlaceMm = 1e5;
-/// Every violation; empty: valid.
+/// Returns every violation; empty if valid.
 [[nodiscard]] std::vector<Problem> validate(const ProgramSettings& settings);
 
 /// One pose of the tool, in the robot's base frame.
@@ -81,52 +82,56 @@ struct ProgramPose {
   Vec3 tip_mm = Vec3::Zero();            ///< the tool's tip
   Mat3 R_robot_tool = Mat3::Identity();  ///< columns: the tool's axes; z points along the tool, out of its tip
   Vec3 rotation_vector = Vec3::Zero();   ///< the same rotation as axis times angle, rad; continuous along the program,
-                                         ///< so the angle may pass pi
+                                         ///< so the angle may exceed pi
   double time_s = 0.0;                   ///< from the start of the program
   double tip_speed_mm_s = 0.0;           ///< of the move that ends here; 0 for the first pose and the dwell
   double depth_mm = 0.0;                 ///< of the tip below the surface along the axis; negative above it
   ProgramPhase phase = ProgramPhase::Approach;
-  std::size_t waypoint = 0;  ///< of the path, at or before this pose
+  std::size_t waypoint = 0;  ///< index of the path's waypoint at or before this pose
 
-  /// Where the tool's axis meets the tissue's surface.
+  /// Returns the point where the tool's axis meets the tissue's surface.
   [[nodiscard]] Vec3 entry_mm() const { return tip_mm - depth_mm * R_robot_tool.col(2); }
 };
 
-/// A timed list of tool poses. Between them the tip speeds up and slows down by S-curves (bounded acceleration and
-/// jerk) where it starts from rest, comes to rest or changes its speed, and keeps its speed elsewhere.
+/// A timed list of tool poses, with the arm's motion along them. The tip starts, stops and changes its speed by
+/// S-curves (bounded acceleration and jerk); elsewhere its speed is constant.
 struct RobotProgram {
   std::vector<ProgramPose> poses;
   PathKind kind = PathKind::Incise;
   bool is_closed = true;
-  double cut_length_mm = 0.0;   ///< of the tip's course once along the path, without overlap
-  double overlap_mm = 0.0;      ///< really run, equal to the setting for a closed path, else 0
+  double cut_length_mm = 0.0;   ///< of the tip's course along the path, without overlap
+  double overlap_mm = 0.0;      ///< the setting for a closed path, otherwise 0
   double spacing_mm = 0.0;      ///< of the poses along the cut
-  double chord_error_mm = 0.0;  ///< largest distance found between the moves and the smooth course
-  ProgramSettings settings{};   ///< that it was made with
-  ArmSetup setup{};             ///< likewise
-  JointMotion motion{};         ///< the arm along the whole course; without samples where it cannot get along
+  double chord_error_mm = 0.0;  ///< greatest distance found between the moves and the smooth course
+  ProgramSettings settings{};   ///< settings that the program was made with
+  ArmSetup setup{};             ///< arm, tool and table that it was made for
+  JointMotion motion{};         ///< the arm along the whole course; without samples if the arm cannot follow it
   [[nodiscard]] double duration_s() const { return poses.empty() ? 0.0 : poses.back().time_s; }
 };
 
-/// A tool in the flange as the pendant has it: the place of its tip, and its rotation as axis times angle, rad.
+/// Returns T_flange_tool, 4 x 4, mm, from the numbers that the teach pendant shows: the position of the tip in the
+/// flange's frame, and the rotation as axis times angle, rad.
 [[nodiscard]] Mat4 tool_pose(const Vec3& tip_mm, const Vec3& rotation_vector);
 
-/// Refuses a path that is not given in the robot's base frame. @param file  names the path in the message.
+/// Requires that a path is given in the robot's base frame.
+/// @param file  names the path in the message.
 /// @throws DataError "<file>: frame: found sim_rest, expected robot. …"
 void require_robot_frame(const ToolPath& path, const std::filesystem::path& file);
 
-/// Turns a path into a program: above the entry, down to the clearance, along the axis to depth, along the path at its
-/// own speeds, over the overlap (closed paths), rest, out along the axis, away.
+/// Makes a program from a path. The tip starts above the entry, goes down to the clearance, along the axis to depth,
+/// along the path at the path's speeds, along the overlap (closed paths), rests, goes out along the axis and retreats.
 ///
-/// The tip follows a smooth curve through the waypoints' tips whose direction and curvature have no steps (see
-/// docs/models/robot.md); poses are evenly spaced along it, as far apart as `chord_error_mm` and `max_spacing_mm`
-/// allow. Phases begin and end at rest. The tool's frame is that about the mean axis, swung by the shortest turn to the
-/// axis of the place: no turn about its own axis is added, and a ring ends as it began.
-/// Then the arm's joints along that course are found (`motion`), on one of the eight branches throughout.
-/// @param path  frame robot; at least 3 waypoints (2 if open), no two neighbours less than 1 µm apart, finite, unit
-/// axes.
-/// @throws InvalidArgument if the path or the settings break a rule, or an axis lies more than 120 degrees from the
-/// mean one.
+/// The tip follows a smooth curve through the waypoints' tips, with continuous direction and curvature
+/// (docs/models/robot.md). Poses are evenly spaced along it, as far apart as `chord_error_mm` and `max_spacing_mm`
+/// allow. Phases begin and end at rest; only the overlap continues the cut without a stop. The tool's frame is the
+/// frame about the mean axis, turned by the shortest rotation to the local axis. No turn about the tool's axis
+/// accumulates, so a ring ends as it began.
+/// Then the arm's joints along that course are computed (`motion`), on one of the eight branches throughout.
+/// @param path  frame robot; at least 3 waypoints (2 if open), tips of neighbours more than 1 µm apart, finite, unit
+///   axes.
+/// @throws InvalidArgument if the path, the settings or the setup is invalid, if an axis lies more than 120 degrees
+/// from the mean axis, if the overlap is not shorter than a closed path, or if the program would take longer than
+/// kLongestProgramS. An arm that cannot follow is no error: see JointMotion::outcome.
 [[nodiscard]] RobotProgram make_program(const ToolPath& path, const ProgramSettings& settings = {},
                                         const ArmSetup& setup = {});
 

@@ -8,14 +8,14 @@
 
 namespace incise {
 
-/// What a written program says of itself, held against what can be found out from it.
+/// Result of an audit: whether a written program is unchanged, and whether its header is true.
 struct [[nodiscard]] ProgramAudit {
   ProgramDigest digest = ProgramDigest::Absent;
-  std::vector<std::string> contradictions;  ///< lines of the header that are not so, one sentence each
+  std::vector<std::string> contradictions;  ///< statements of the program that are false, one sentence each
   std::vector<std::string> recomputed;      ///< names of the checks that were made again
-  std::vector<std::string> not_recomputed;  ///< of those that only the header names, or why none was made again
-  std::vector<std::string> moved_limits;    ///< "close_margin_mm 1, by default 2.2": what options moved
-  /// It is the program that was written, to the byte, and its checks give what it states.
+  std::vector<std::string> not_recomputed;  ///< names of the other checks, or why none was made again
+  std::vector<std::string> moved_limits;    ///< limits that options changed: "close_margin_mm 1, by default 2.2"
+  /// Whether the program is unchanged to the byte and the audit found no contradiction.
   [[nodiscard]] bool is_checked() const { return digest == ProgramDigest::Matches && contradictions.empty(); }
 };
 inline void describe(Visitor& v, ProgramAudit& a) {
@@ -29,13 +29,14 @@ inline void describe(Visitor& v, ProgramAudit& a) {
   v("moved_limits", a.moved_limits, "What options moved.");
 }
 
-/// Makes the program again from its header (path, tumour edge, settings, limits), checks it again and holds the
-/// header's lines against what comes out. What needs the tissue's surface, the registration or the path before
-/// correction cannot be made again.
+/// Makes the program again from its header (path, tumour edge, settings, limits), checks it again, and compares the
+/// motion and the header with the result. Checks that need the tissue's surface, the registration, the power or the
+/// path before correction cannot be made again.
 [[nodiscard]] ProgramAudit audit_program(const WrittenProgram& program);
 
-/// A completed replay of a program whose digest differs, or whose header is not so, gets that outcome. A program
-/// without a digest plays: it is just not a checked one.
+/// Changes the outcome of a completed replay: to Altered if the program's digest differs, otherwise to FalseChecks if
+/// the audit found a contradiction. A program without a digest may complete, although ProgramAudit::is_checked is
+/// false.
 void judge_audit(Replay& replay, const ProgramAudit& audit);
 
 }  // namespace incise

@@ -13,20 +13,22 @@
 
 namespace incise {
 
-/// What every written program says of itself, in the form's own way: comment lines `# incise.KEY: VALUE` of a script, a
-/// table or YAML, the object `header` of JSON, a message of a bag. Keys may repeat. The player reads them back.
+/// Statements of a written program about itself, as keys and values. The form depends on the file: comment lines `#
+/// incise.KEY: VALUE` in a script, a table or YAML; the list `header` in JSON; a message in a bag. Keys may repeat.
+/// program_from_text reads them back.
 using ProgramHeader = std::vector<std::pair<std::string, std::string>>;
 
-/// The heading of a program: kind, closed, lengths, tool, arm, branch, the path's waypoints (so that the player knows
-/// the intended course), the checks made, those overridden and not made.
-/// @param provenance  added lines, key and value: what it was made from, hashes, version.
+/// Returns the header of a program: kind, closed, lengths, tool, arm, branch, settings and limits, the path's waypoints
+/// (from which the player knows the intended course), the tumour edge, and the checks that were made, overridden and
+/// not made.
+/// @param provenance  additional entries: inputs, hashes, version.
 [[nodiscard]] ProgramHeader program_header(const RobotProgram& program, const ToolPath& path,
                                            const ProgramChecks& checks, const ProgramHeader& provenance = {});
 
-/// How a program is written as URScript.
+/// Kind of motion commands in a URScript program.
 enum class ScriptMotion {
-  MoveP,  ///< `movel` and `movep` with blends: the controller finds the joints and keeps the tip's speed
-  ServoJ  ///< a stream of joint positions at even times
+  MoveP,  ///< `movel` and `movep` with blends: the controller computes the joints and keeps the tip's speed
+  ServoJ  ///< a stream of joint positions at equal intervals of time
 };
 inline constexpr std::array<std::string_view, 2> kScriptMotionNames{"movep", "servoj"};
 [[nodiscard]] constexpr Names names_of(ScriptMotion) {
@@ -50,38 +52,41 @@ inline void describe(Visitor& v, UrScriptSettings& s) {
   v({"settle_s", "Of servoj: rest added where a motion ends, so that the arm has caught up.", "s"}, s.settle_s,
     {0.0, 5.0});
 }
-/// Every violation; empty: valid.
+/// Returns every violation; empty if valid.
 [[nodiscard]] std::vector<Problem> validate(const UrScriptSettings& settings);
 
-/// The program as a URScript function and a call to it: metres, seconds, axis-angle poses p[x, y, z, rx, ry, rz] of the
-/// tool's tip in the base frame. It sets the tool centre point, goes to the first joint positions by `movej` (this
-/// settles the arm's branch) and then runs the course: with MoveP by `movel` through the air, into and out of the
-/// tissue, and by `movep` with blends along the cut; with ServoJ by one `servoj` per sample of the motion. The power of
-/// the electrode is not switched. Nothing in it opens a connection. A comment says that it comes from a simulation.
-/// @pre the program's numbers are finite, its motion was found, the settings are valid (InvalidArgument).
+/// Returns the program as a URScript function and a call to it: metres, seconds, axis-angle poses p[x, y, z, rx, ry,
+/// rz] of the tool's tip in the base frame. The script sets the tool centre point and goes to the first joint positions
+/// by `movej`, which determines the arm's branch. Then it runs the course: with MoveP by `movel` through the air, into
+/// and out of the tissue, and by `movep` with blends along the cut; with ServoJ by one `servoj` per sample of the
+/// motion, and more where a motion ends (UrScriptSettings::settle_s). It does not switch the electrode and opens no
+/// connection.
+/// @throws InvalidArgument if a number of the program is not finite, its motion was not found, or the settings are
+/// invalid.
 [[nodiscard]] std::string to_urscript(const RobotProgram& program, const ProgramHeader& header,
                                       const UrScriptSettings& settings = {});
 
-/// The motion as a table: comment lines with the header, then `time_s`, six joint positions (rad, named as in the
-/// maker's ROS description), six speeds (`…_rad_s`), six accelerations (`…_rad_s2`), `tip_x_mm`, `tip_y_mm`,
-/// `tip_z_mm`, `phase`. @pre as to_urscript
+/// Returns the motion as a CSV table: comment lines with the header, then the columns `time_s`, six joint positions
+/// (`…_rad`, with the names of the maker's ROS description), six speeds (`…_rad_s`), six accelerations (`…_rad_s2`),
+/// `tip_x_mm`, `tip_y_mm`, `tip_z_mm`, `phase`.
+/// @throws InvalidArgument if a number of the program is not finite or its motion was not found.
 [[nodiscard]] std::string to_joint_csv(const RobotProgram& program, const ProgramHeader& header);
 
-/// The motion as `trajectory_msgs/JointTrajectory` in YAML, as ROS 2 reads it (`ros2 topic pub --file`): rad, rad/s,
-/// rad/s²; frame_id `base`. @pre as to_urscript
+/// Returns the motion as `trajectory_msgs/JointTrajectory` in YAML, for ROS 2 (`ros2 topic pub --file`): rad, rad/s,
+/// rad/s²; frame_id `base`.
+/// @throws InvalidArgument as to_joint_csv.
 [[nodiscard]] std::string to_ros_yaml(const RobotProgram& program, const ProgramHeader& header);
 
-/// The same message as a ROS 1 bag (format 2.0, not compressed, one chunk): topic `/joint_trajectory`, and the header
-/// as `std_msgs/String` on `/incise/header`; both at time 1 s. Source: the format's published description
-/// [RosbagFormat].
-/// @pre as to_urscript
+/// Returns the bytes of a ROS 1 bag (format 2.0, not compressed, one chunk) with the same message on the topic
+/// `/joint_trajectory`, and the header as `std_msgs/String` on `/incise/header`; both at time 1 s.
+/// @throws InvalidArgument as to_joint_csv. Source: the published description of the format [RosbagFormat].
 [[nodiscard]] std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header);
 
-/// The program as JSON, mm, s and rad: `header`, `poses` with `phase`, `time_s`, `tip_mm`, `rotation_vector`,
-/// `tip_speed_mm_s`, `depth_mm`; with `checks` given, also every check (name, passed, overridden, value, limit, unit,
-/// pose, waypoint, text) and `checks_not_made`; and `motion` with the arm's branch and `samples` [time_s, six joints,
-/// six speeds].
-/// @pre the program's numbers are finite (InvalidArgument).
+/// Returns the program as JSON, mm, s and rad: `header`; `poses` with `phase`, `time_s`, `tip_mm`, `rotation_vector`,
+/// `tip_speed_mm_s`, `depth_mm`, `waypoint`; `motion` with the arm's branch and `samples` [time_s, six joints, six
+/// speeds]. If `checks` is given, also every check (name, passed, overridden, value, limit, relation, unit, pose,
+/// waypoint, text) and `checks_not_made`. The motion may be one that was not found.
+/// @throws InvalidArgument if a number of the program is not finite.
 [[nodiscard]] std::string program_json(const RobotProgram& program, const ProgramChecks* checks = nullptr,
                                        const ProgramHeader& header = {});
 

@@ -7,19 +7,19 @@
 
 namespace incise {
 
-/// What a program's header says of a specimen that is no patient's.
+/// Statement in a program's header if the specimen is virtual.
 inline constexpr const char* kVirtualSpecimen = "VIRTUAL SPECIMEN: made for a synthetic body, not for a patient.";
 
-/// Failed checks of a program that nobody took on themselves join the verdict as `program_check`.
+/// Adds each failed check that is not overridden to the verdict, as the reason `program_check`.
 void add_failed_checks(const ProgramChecks& checks, Verdict& verdict);
-/// So does a replay that did not complete.
+/// Adds a replay that did not complete to the verdict, as the reason `program_check`.
 void add_failed_replay(const Replay& replay, Verdict& verdict);
 
-/// What a program's header says of its verdict: the status, each reason, each accepted caution.
+/// Returns the header's entries for a verdict: the status, each reason, each accepted caution.
 [[nodiscard]] ProgramHeader verdict_header(const Verdict& verdict, const VerdictGate& gate);
 
-/// The verdict of a cut as one of a mark of the tumour's edge: a mark cuts nothing, so that of the cautions only those
-/// against its place remain; what is refused as a cut is not marked either.
+/// Returns the verdict of a mark on the tumour edge, from the verdict of the cut. A mark cuts nothing, so only cautions
+/// about its position remain (`registration`, `typed_transform`). Refusals remain too.
 [[nodiscard]] Verdict as_verdict_of_mark(const Verdict& of_cut);
 
 }  // namespace incise

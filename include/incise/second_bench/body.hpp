@@ -10,31 +10,31 @@ namespace incise::second_bench {
 
 struct BodyState;  // tissue, platform and shape: private to the bench
 
-/// How finely the second bench computes. Part of what it is: results change with it.
+/// Resolution of the second bench's computation. It is a part of the bench: results depend on it.
 struct Resolution {
-  double brick_mm = 2.0;   ///< edge of the bricks round the tumour's ring, about; > 0
-  double coarse_mm = 4.5;  ///< far from it; >= brick_mm
-  double way_mm = 0.5;     ///< of the tool in a step, or half a second of dwelling; > 0
-  int relaxations = 14;    ///< iterations of the tissue in a step; > 0
+  double brick_mm = 2.0;   ///< approximate edge of the bricks round the tumour's ring, > 0
+  double coarse_mm = 4.5;  ///< the same far from it, >= brick_mm
+  double way_mm = 0.5;     ///< greatest travel of the tool in a step, > 0; a step also takes at most half a second
+  int relaxations = 14;    ///< iterations of dynamic relaxation in a step, > 0
 };
 
-/// A specimen of the second bench in its holder: clamped, its tip drawn forward. LPS frame of the shape, mm; the
-/// platform is z = 0, +z is up, and camera and surgeon look along -z. Hidden from whoever plans.
+/// A specimen of the second bench in its holder: clamped, its tip pulled forward. LPS frame of the shape, mm; the
+/// platform is z = 0, +z is up, and camera and surgeon look along -z. Hidden from the planner.
 struct Body {
   Specimen specimen;
   Resolution resolution;
   std::shared_ptr<const BodyState> state;   ///< stretched, relaxed for Specimen::wait_s
   double stretch_force_n = 0.0;             ///< the suture's pull when the cut begins
-  double gauge_force_n = 0.0;               ///< what its gauge said after Specimen::gauge_s, bias included, noise not
-  double residual = 0.0;                    ///< free forces over reactions when last at rest
+  double gauge_force_n = 0.0;               ///< the gauge's reading at Specimen::gauge_s, with its bias, without noise
+  double residual = 0.0;                    ///< norm of the free forces divided by that of the reactions, at the end
   Outcome outcome = Outcome::NotConverged;  ///< Success: `residual` is below 1e-3
 };
 
-/// Makes the body of a specimen, holds and stretches it; about one second of one core. The same specimen and resolution
-/// give the same bits. A body that does not come to rest is a result: its `outcome` says so, and nothing can be read or
-/// cut.
-/// @throws CaseError for a specimen that is not valid or a tumour beyond the tissue; InvalidArgument for a resolution
-/// out of range; Cancelled.
+/// Makes the body of a specimen, clamps and stretches it; takes about one second on one core. The same specimen and
+/// resolution give the same bits. A body that does not come to rest is returned, with its `outcome`; do not read or cut
+/// it.
+/// @throws CaseError naming the first parameter out of range, or for a tumour that reaches beyond the tissue;
+///         InvalidArgument for a resolution out of range; Cancelled.
 [[nodiscard]] Body make_body(const Specimen& specimen, const Resolution& resolution, Monitor& monitor);
 
 }  // namespace incise::second_bench

@@ -12,24 +12,24 @@
 
 namespace incise::second_bench {
 
-/// What can be made to vary from specimen to specimen, or be held still.
+/// A group of hidden parameters that either vary from specimen to specimen or keep their defaults.
 enum class Factor {
   Ring,          ///< size, shape and place of the tumour
   Prescription,  ///< margin, depth, speed and start of the cut
   Fibres,
   Stiffening,
-  Tumor,  ///< its stiffness
-  Relaxation,
-  Cutting,  ///< energy that ablates, toughness, adhesion, char
-  Pull,     ///< what the gauge says of it
-  Suture,   ///< its creep during the cut
-  Platform,
-  Motion,   ///< drift and breathing
-  HandEye,  ///< shared by all specimens of a series
-  Imaging,  ///< scanner, segmentation, pose in the scanner, lens
-  Photograph,
-  Arm,
-  Heat,  ///< shrinking rim
+  Tumor,       ///< stiffness of the tumour
+  Relaxation,  ///< ratio and time of the viscous branch; times of cut and gauge reading
+  Cutting,     ///< ablation energy, lost power, reach of the arc, toughness, adhesion, char
+  Pull,        ///< bias of the gauge
+  Suture,      ///< creep of the suture during the cut
+  Platform,    ///< friction and relief
+  Motion,      ///< drift and breathing
+  HandEye,     ///< hand-eye error, shared by all specimens of a series
+  Imaging,     ///< scanner, segmentation, pose in the scanner, lens
+  Photograph,  ///< distance and tilt of its camera, hand of the annotator, stains
+  Arm,         ///< lag, wandering, bending of the needle
+  Heat,        ///< shrinking of heated tissue
 };
 inline constexpr std::array<std::string_view, 16> kFactorNames{
     "ring",   "prescription", "fibres", "stiffening", "tumor",   "relaxation", "cutting", "pull",
@@ -40,11 +40,11 @@ inline constexpr std::array<std::string_view, 16> kFactorNames{
 using Factors = std::set<Factor>;
 [[nodiscard]] Factors all_factors();
 
-/// Everything that is hidden about a specimen of the second laboratory, and what its surgeon prescribes. A default is
-/// what a parameter is where its factor is held still.
+/// The hidden parameters of a specimen of the second bench, and its prescription. A parameter keeps its default if its
+/// factor does not vary. parameters() gives the meaning, spread and source of each.
 struct Specimen {
-  std::uint64_t seed = 1;    ///< of the shape, of the fields inside, of all noise and of every parameter
-  std::uint64_t series = 1;  ///< of the hand-eye error: specimens of one series share it
+  std::uint64_t seed = 1;    ///< of shape, fields inside, all noise and all parameters but the hand-eye error
+  std::uint64_t series = 1;  ///< seed of the hand-eye error, which the specimens of a series share
 
   // The tumour, at rest.
   double tumor_diameter_mm = 18.5;
@@ -53,13 +53,13 @@ struct Specimen {
   double tumor_along = 0.47;
   double tumor_aside = 0.0;
 
-  // What is prescribed: known to whoever plans.
+  // Prescription, known to the planner.
   double margin_mm = 5.0;
   double depth_mm = 5.0;
   double speed_mm_s = 7.0;
   double start_deg = 0.0;
 
-  // What it is made of.
+  // Mechanics of the tissue; times from the stretch to the cut and to the gauge's reading.
   double youngs_modulus_kpa = 10.0;
   double poissons_ratio = 0.46;
   double stiffness_spread = 0.12;
@@ -71,7 +71,7 @@ struct Specimen {
   double wait_s = 120.0;
   double gauge_s = 120.0;
 
-  // How it is cut.
+  // Cutting.
   double ablation_j_mm3 = 0.38;
   double ablation_spread = 0.07;
   double lost_power_w = 15.0;
@@ -81,7 +81,7 @@ struct Specimen {
   double char_per_mm = 0.0;
   double shrinking = 0.0;
 
-  // How it is held.
+  // Holder, and motion during the cut.
   double stretch_error_mm = 0.0;
   double stretch_angle_deg = 0.0;
   double clamp_slip_mm = 0.8;
@@ -92,7 +92,7 @@ struct Specimen {
   double breathing_mm = 0.0;
   double drift_mm = 0.0;
 
-  // Eyes and arm.
+  // Arm, scanner, cameras and placement.
   double hand_eye_x_mm = 0.0;
   double hand_eye_y_mm = 0.0;
   double hand_eye_z_mm = 0.0;
@@ -120,15 +120,18 @@ void describe(Visitor& v, Specimen& specimen);
 struct Parameter : HiddenParameter<Specimen> {
   std::optional<Factor> factor;  ///< absent: it always varies
 };
-/// All of them, in the order of Specimen.
+/// Returns all hidden parameters, in the order of Specimen.
 [[nodiscard]] std::span<const Parameter> parameters();
 
-/// A specimen at random. Each parameter has a stream of its own: a new one leaves the others as they were.
-/// @param factors  what varies beside parameters without a factor; the rest stays at the defaults of Specimen.
+/// Draws a specimen at random. Each parameter has its own random stream, so a new parameter leaves the others
+/// unchanged.
+/// @param factors  the factors that vary, beside the parameters without a factor; other parameters keep the defaults of
+///                 Specimen.
 [[nodiscard]] Specimen draw_specimen(std::uint64_t seed, std::uint64_t series, const Factors& factors);
 
-/// Power that the surgeon sets for a cut of this depth and speed, W: what ablates a kerf as wide as electrode and arc,
-/// 20 W at 5 mm and 7 mm/s, beside the 15 W that are lost; at least 20 W. Paper II-B.3: 35 W at 5 mm and 7 mm/s.
+/// Returns the power that the surgeon sets for the specimen's depth and speed, W: the power that ablates a kerf as wide
+/// as electrode and arc (20 W at 5 mm and 7 mm/s, proportional to both) plus the 15 W that are lost; at least 20 W.
+/// Paper II-B.3: 35 W at 5 mm and 7 mm/s.
 [[nodiscard]] double prescribed_power_w(const Specimen& specimen);
 
 }  // namespace incise::second_bench

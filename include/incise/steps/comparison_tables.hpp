@@ -5,10 +5,10 @@
 
 namespace incise::steps {
 
-/// One row for each incision, as in the paper's Table II.
+/// Returns a table with one row for each incision, as in the paper's Table II.
 [[nodiscard]] TextTable result_table(const CutComparison& comparison);
 
-/// One row for each test of a comparison, the pooled ones labelled as such.
+/// Returns a table with one row for each test of a comparison. Pooled tests are labelled as such.
 [[nodiscard]] TextTable test_table(const CutComparison& comparison);
 
 }  // namespace incise::steps

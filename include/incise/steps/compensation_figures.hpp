@@ -14,14 +14,16 @@ struct CompensationFigure {
   LinePlot plot;
 };
 
-/// Error along the path, pass by pass, and mean error against the pass, from what a study's folder holds. Empty: no
-/// correction, or one without passes. @throws DataError for a damaged file.
+/// Returns the figures of the correction in a run's folder: error along the path, pass by pass; mean error against the
+/// pass; with a robust path, the offsets of its waypoints. Empty: no correction, one without passes, or no error of the
+/// first cut. @throws DataError for a damaged file.
 [[nodiscard]] std::vector<CompensationFigure> compensation_figures(const std::filesystem::path& root);
 
-/// Pass by pass: mean, greatest and correctable error, greatest move. No rows: as above.
+/// Returns mean and greatest error, error averaged along the path, and greatest move, pass by pass. No rows: no
+/// correction, or one without passes.
 [[nodiscard]] ReportTable compensation_table(const std::filesystem::path& root);
 
-/// Writes the figures to `folder`, which is made. @returns the paths of the files.
+/// Writes the figures to `folder`, which is created. @returns the paths of the files.
 std::vector<std::filesystem::path> write_compensation_figures(const std::filesystem::path& root,
                                                               const std::filesystem::path& folder);
 

@@ -8,12 +8,12 @@
 
 namespace incise::steps {
 
-/// What is held against a path that a registration laid down: a caution `typed_transform` where the file does not carry
-/// the digest of `incise register`, and one `registration` for each doubt that `register` itself wrote into it.
+/// Returns the objections to a path that a registration laid down: a caution `typed_transform` if the file does not
+/// carry the digest of `incise register`, and one `registration` for each doubt that `register` itself wrote into it.
 [[nodiscard]] Verdict verdict_of(const RegistrationRecord& registration, const std::filesystem::path& file);
 
-/// A registration holds only for the clouds that it was made from. A cloud that no longer exists gets a warning.
-/// @throws DataError for a cloud that was changed since.
+/// Checks that the clouds of a registration are unchanged, because it holds only for them. A cloud that no longer
+/// exists gets a warning. @throws DataError for a cloud that has changed since.
 void require_clouds_unchanged(const RegistrationRecord& registration, const std::filesystem::path& file,
                               Monitor& monitor);
 

@@ -16,63 +16,63 @@
 
 namespace incise::steps {
 
-/// What a program is written as.
+/// File formats of a program.
 enum class ProgramForm { UrScript, JointCsv, RosTrajectory, Json };
 inline constexpr std::array<std::string_view, 4> kProgramFormNames{"urscript", "joint-csv", "ros-trajectory", "json"};
 [[nodiscard]] constexpr Names names_of(ProgramForm) {
   return kProgramFormNames;
 }
 
-/// From a path in the robot's frame to a checked program.
+/// Input of export_program: a path in the robot's frame, and what is known of the cut.
 struct ExportRequest {
   std::filesystem::path path;
   std::filesystem::path intended;      ///< the path before correction; empty: not known
   std::filesystem::path surface;       ///< the tissue in the robot's frame; empty: not known
-  std::filesystem::path registration;  ///< that laid the path down; empty: not known
-  std::optional<PathKind> kind;        ///< in place of the one in the path's file
+  std::filesystem::path registration;  ///< registration that laid the path down; empty: not known
+  std::optional<PathKind> kind;        ///< replaces the kind in the path's file; absent: as in the file
   bool is_open = false;                ///< the path is an open cut
   ProgramForm form = ProgramForm::UrScript;
-  std::optional<ScriptMotion> motion;  ///< of URScript alone; absent: MoveP
+  std::optional<ScriptMotion> motion;  ///< only with URScript; absent: MoveP
   CheckSettings checks;
   ProgramSettings settings;
-  std::optional<double> overlap_mm;  ///< of a closed path; absent: usual_overlap_mm for an incision, none for a mark
+  std::optional<double> overlap_mm;  ///< of a closed path; absent: usual_overlap_mm for an incision, 0 for a mark
   double usual_overlap_mm = kRingOverlapMm;  ///< of an incision, >= 0
   ArmSetup setup;
-  std::optional<double> power_w;       ///< of the generator; absent: not known
-  ThermalSettings thermal;             ///< of the tissue: a path does not say what it is cut into
-  std::optional<Tool> tool;            ///< absent: a needle as long as `checks` has it
-  std::filesystem::path case_file;     ///< whose settings these are; empty: no case's
-  std::string case_sha256;             ///< of that file
-  std::string case_specimen_id;        ///< of that case; empty: not known
-  std::vector<std::string> overrides;  ///< checks that a person takes on them
-  std::vector<std::string> accepted;   ///< cautions of the verdict, likewise
+  std::optional<double> power_w;       ///< power of the generator; absent: not known
+  ThermalSettings thermal;             ///< of the tissue that is cut, which a path does not state
+  std::optional<Tool> tool;            ///< absent: a needle of the length in `checks`
+  std::filesystem::path case_file;     ///< case that these settings are from; empty: none
+  std::string case_sha256;             ///< of case_file
+  std::string case_specimen_id;        ///< specimen of that case; empty: not known
+  std::vector<std::string> overrides;  ///< failed checks for which a person takes responsibility
+  std::vector<std::string> accepted;   ///< cautions of the verdict that a person accepts
   std::filesystem::path output;
 };
-/// Copies from a case what its own run takes for its program: arm, limits, power, heat, tool and overlap. The path has
-/// to be of the case's specimen. Reads the scan or mesh of a case that names no specimen.
-/// @throws CaseError as require_round_tool; DataError where the scan or mesh cannot be read.
+/// Copies from a case what its own run uses for its program: arm, limits, power, heat, tool and overlap. The exported
+/// path must be of the case's specimen. Reads the scan or mesh of a case that names no specimen.
+/// @throws CaseError as require_round_tool; DataError if the scan or mesh cannot be read.
 void take_case(const CaseFile& file, ExportRequest& request);
-/// Writes the program if the verdict allows it; else the result is not acceptable, and nothing is written.
-/// @throws DataError for a file that cannot be used; CaseError for overrides, a tool or an output that do not go with
-/// the path or the form.
+/// Checks a path and writes its program if the verdict allows it. Otherwise nothing is written and the result is not
+/// acceptable. @throws DataError for a file that cannot be used; CaseError for overrides, a tool or an output that do
+/// not suit the path or the format.
 [[nodiscard]] StepResult export_program(const ExportRequest& request, const StepContext& context);
 
-/// A written program as the arm would run it.
+/// Input of replay_program: a written program, and the path that it should follow.
 struct ReplayRequest {
   std::filesystem::path program;
-  std::filesystem::path path;     ///< frame robot; empty: the one that the program was made for, if it says so
-  double slider_percent = 100.0;  ///< of the controller's speed slider, [1, 100]
+  std::filesystem::path path;     ///< in the frame `robot`; empty: the path in the program, if it has one
+  double slider_percent = 100.0;  ///< position of the controller's speed slider, [1, 100]
   double max_deviation_mm = PlayerSettings{}.max_deviation_mm;  ///< of the tip from the path in the cut, > 0
   std::filesystem::path output;                                 ///< folder; empty: no files
 };
-/// Not acceptable: a program that does not run to its end, leaves its path, or is not the one that was checked.
-/// @throws DataError for a file that cannot be used.
+/// Runs a written program as the arm would. Not acceptable: a program that does not run to its end, leaves its path, or
+/// is not the one that was checked. @throws DataError for a file that cannot be used.
 [[nodiscard]] StepResult replay_program(const ReplayRequest& request, const StepContext& context);
 
-/// Writes `replay.svg`, where the program cuts, into a folder. @throws DataError
+/// Writes replay.svg into a folder; nothing if the program does not cut. @throws DataError
 void write_replay_figure(const std::filesystem::path& folder, const Replay& replay);
 
-/// Warns of each reason that blocks the program, and of each caution that was accepted.
+/// Warns of each reason that blocks the program, and of each accepted caution.
 void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor);
 
 }  // namespace incise::steps

@@ -14,9 +14,9 @@
 
 namespace incise::steps {
 
-/// What a step from files to files is given beside its request.
+/// Context of a step, beside its request.
 struct StepContext {
-  RunContext run;  ///< what the manifests of its results say
+  RunContext run;  ///< command, seed and threads for the manifests
   Workers& workers;
   Monitor& monitor;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
@@ -25,22 +25,22 @@ struct StepContext {
   }
 };
 
-/// What came of a step that ran to its end.
+/// Result of a step that ran to its end.
 struct StepResult {
-  nlohmann::ordered_json json;  ///< what `--json` prints
-  bool is_acceptable = true;    ///< else nothing can be done with what it found
+  nlohmann::ordered_json json;  ///< output of `--json`
+  bool is_acceptable = true;    ///< false: the result is of no use
 };
 
-/// The manifest of what a step without a case makes. The specimen is the one that all inputs state, if they do. Empty
-/// names among the inputs: not given. @throws DataError for an input that cannot be read.
+/// Returns the manifest of a step without a case. Its specimen is the one that the inputs state, if they agree.
+/// @param inputs  files; empty paths are skipped. @throws DataError for an input that cannot be read.
 [[nodiscard]] Manifest manifest_of(const RunContext& run, std::string settings_json,
                                    const std::vector<std::filesystem::path>& inputs, double wall_s);
 
-/// Makes the folder that an output folder is to lie in. Empty: nothing. @throws DataError if it cannot be made, or the
-/// output is there already and is somebody else's.
+/// Makes the parent folder of an output folder. Does nothing for an empty path. @throws DataError if it cannot be made,
+/// or if the output exists and is not incise's own.
 void make_parent(const std::filesystem::path& folder);
 
-/// Each reason as a warning.
+/// Reports each reason as a warning.
 void report_reasons(const Verdict& verdict, Monitor& monitor);
 
 }  // namespace incise::steps

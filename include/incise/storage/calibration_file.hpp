@@ -13,22 +13,25 @@
 
 namespace incise {
 
-/// Table I: speed, dullness, drag length, stiffness, each specimen's absolute error, the pooled columns, per cent.
-/// Header with units; a failure is an empty field and `failure` in the column outcome.
+/// Returns Table I, one row per speed and dullness: these two, drag length, outcome, stiffness factor and errors of
+/// each specimen, pooled errors, and scores in per cent. Units are in the header. A failed run has empty fields for its
+/// absolute errors; its outcome is `failure`, or how the cut ended.
 [[nodiscard]] TextTable calibration_table(const Calibration& calibration);
-/// The same rounded as the paper prints it, for LaTeX.
+/// Returns the same table rounded as in the paper, for LaTeX.
 [[nodiscard]] TextTable calibration_table_rounded(const Calibration& calibration);
 
-/// What `incise calibrate` wrote, without the contours of its runs and the rows of its table.
-/// @throws DataError naming the file and the place that is missing, of another kind, or out of range.
+/// Reads the file of `incise calibrate`, without the contours of its runs and the rows of its table.
+/// @throws DataError naming the file and the place that is missing, of another type, or out of range.
 [[nodiscard]] Calibration read_calibration(const std::filesystem::path& path);
 
-/// What it says of the next specimen. @param path  of the file, for the message.
-/// @throws DataError for a calibration without a posterior (--method paper), without a setting that worked, without
-/// rings (of an older version), or with profiles that do not go together.
+/// Returns what a calibration predicts about the next specimen. @param path  its file, for messages
+/// @throws DataError for a calibration without a posterior (--method paper), without a setting with which a simulated
+///         ring closed, without rings (written by an older version), or with error profiles that differ in length, have
+///         fewer than 9 or more than 360 sectors, or exceed 10 mm.
 [[nodiscard]] CalibratedBelief belief_of(const Calibration& calibration, const std::filesystem::path& path);
 
-/// What it says of its specimens, to hold a further one against. A modulus counts only where the pull was measured.
+/// Returns the measured values of a calibration's specimens, for comparison with another specimen. Includes the Young's
+/// modulus of a specimen only if its pull force was measured.
 [[nodiscard]] CalibratedRange range_of(const Calibration& calibration);
 
 }  // namespace incise

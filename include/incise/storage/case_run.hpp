@@ -12,39 +12,42 @@
 
 namespace incise {
 
-/// A person asked to stop and something is kept, by default the finished stages; after a plain Cancelled nothing is.
+/// Thrown if a run is cancelled and something is kept, by default the finished stages. After a plain Cancelled, nothing
+/// is kept.
 class StagesKept : public Cancelled {
  public:
   explicit StagesKept(const std::string& what, const std::string& kept = "the stages that were finished are kept")
       : Cancelled(what + "; " + kept + ", run the same command to go on") {}
 };
 
-/// A case, and the files that it names looked for, before anything is written. @throws CaseError, DataError
+/// Reads a case and checks that the files that it names exist. @throws as read_case and require_input_files.
 [[nodiscard]] CaseFile read_case_with_inputs(const std::filesystem::path& file_or_folder);
 
-/// Where the results of a case go by default: `out/` beside the case file.
+/// Returns the default output folder of a case: `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_beside(const std::filesystem::path& file_or_folder);
 
-/// One way through the loop on a folder, which no other run may write into meanwhile: the stages up to
-/// `options.until`, and a `study.json` in the folder that says which case it is of.
+/// A run of the loop on a case, with exclusive use of its output folder. Runs the stages up to `options.until`; writes
+/// `study.json`, which names the case, into the folder.
 class CaseRun {
  public:
-  /// @param output  made if missing; where it is there, its own files have to be of an earlier run.
-  /// @throws DataError where the folder is somebody else's, in use, or cannot be made; CaseError for the root of all
-  /// files.
+  /// @param output  created if missing; otherwise its own files must be from an earlier run (see require_own_files)
+  /// @throws DataError if the folder holds files from elsewhere, is in use, or cannot be made; CaseError for the root
+  ///         of the file system.
   CaseRun(CaseFile file, const std::filesystem::path& output, const RunOptions& options = {},
           const RunContext& context = {});
 
-  /// Runs the stages up to `options.until`. A run that fails before its first product leaves no folder behind.
-  /// @throws CaseError naming the case's file, DataError; StagesKept or Cancelled when the monitor asks to stop.
+  /// Runs the stages up to `options.until`. If it fails before its first product, a folder that it made is removed.
+  /// @throws CaseError naming the case's file, DataError; StagesKept or Cancelled if the monitor asks to stop.
   [[nodiscard]] Study study(Workers& workers, Monitor& monitor);
-  /// Runs all of them, and makes and checks the robot program (see incise::run). @throws likewise.
+  /// As study, and makes and checks the robot program (see incise::run), which write_run writes. On any exception but
+  /// Cancelled, removes the `program/` of an earlier run.
+  /// @param accepted  ids of the cautions that a person accepts  @throws as study.
   [[nodiscard]] Run run(std::span<const std::string> accepted, Workers& workers, Monitor& monitor);
 
   const bool is_new_folder;  ///< the output did not exist before
 
  private:
-  std::optional<FolderLock> lock_;  ///< on the output, before the folder is looked at
+  std::optional<FolderLock> lock_;  ///< on the output folder; taken before `folder` reads it
 
  public:
   RunFolder folder;
@@ -52,14 +55,14 @@ class CaseRun {
  private:
   template <class Work>
   auto guarded(Monitor& monitor, const Work& work) -> decltype(work());
-  /// A run that failed before its first product leaves no folder behind.
+  /// Removes the output folder if this run made it and it holds nothing but study.json.
   void remove_if_nothing_was_made() const;
   const RunOptions options_;
 };
 
-/// From a case to the checked robot program, on every thread of the machine and without messages. The output folder
-/// gets what `incise run` writes but for figures and report; what it has already is not computed again.
-/// @param case_path  case.yaml, or its folder.  @param accepted  ids of the cautions that a person takes on them.
+/// Runs the whole loop, from a case to the checked robot program, on all threads of the machine and without messages.
+/// Writes into the output folder what `incise run` writes, except figures and report; reuses results that are there.
+/// @param case_path  case.yaml, or its folder  @param accepted  ids of the cautions that a person accepts
 /// @throws as CaseRun.
 [[nodiscard]] Run run_case(const std::filesystem::path& case_path, const std::filesystem::path& output,
                            std::span<const std::string> accepted = {});

@@ -4,19 +4,19 @@
 
 namespace incise {
 
-/// What an output folder of a case holds beside its folders of results (study.json, report.html, manifest.json,
-/// figures) has to be of an earlier run, and no link. @throws DataError for one that is not; CaseError for the root of
-/// all files.
+/// Checks that an output folder is no link and that its study.json, manifest.json, report.html and figures, where they
+/// exist, are no links and were written by an earlier run.
+/// @throws DataError for the first that is not; CaseError if `output` is the root of the file system.
 void require_own_files(const std::filesystem::path& output);
 
-/// The same of a page, and of the figures that are drawn beside it. @throws DataError
+/// Checks the same for a page and the folder `figures` beside it. @throws DataError
 void require_own_page(const std::filesystem::path& page);
 
-/// The manifest that is written beside a result of one file. @throws DataError
+/// Checks the same for the manifest beside a single-file result (manifest_beside). @throws DataError
 void require_own_manifest_beside(const std::filesystem::path& result);
 
-/// A robot program in the place of a new one has to be of `incise export`, and no link: what a laboratory wrote itself
-/// cannot be made again. @throws DataError
+/// Checks that an existing robot program, about to be replaced, is no link and was written by incise: a program that a
+/// laboratory wrote itself cannot be made again. @throws DataError
 void require_own_program(const std::filesystem::path& program);
 
 }  // namespace incise

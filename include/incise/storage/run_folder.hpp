@@ -14,21 +14,21 @@
 
 namespace incise {
 
-/// What every manifest of a run says beside settings and inputs.
+/// Facts that every manifest of a run states beside settings and inputs.
 struct RunContext {
   std::string command;  ///< the command line
   std::uint64_t seed = 0;
   int threads = 1;
 };
 
-/// The folder of a run: what its case is given comes from the case's files, what it makes is kept in a cache, and each
-/// product that people look at has a folder of its own, written under a temporary name and renamed when complete:
+/// The folder of a run. It reads inputs from the case's files, keeps results in a cache, and writes each product into a
+/// separate folder for people, which has a temporary name until it is complete:
 ///
-///   cache/       what the next run takes in place of computing it: a file for each stage, and for a cut under way
-///                (as_planned.checkpoint.bin); may be removed at any time
+///   cache/       results that the next run loads instead of computing them: a file for each stage, and for an
+///                unfinished cut (as_planned.checkpoint.bin); may be removed at any time
 ///   labels/      labels.nrrd, occupancy.nrrd, segment.json
 ///   mesh/        mesh.vtu, planned_cut_rest.csv, quality.json
-///   stretched/   deformed.vtu, deform.json
+///   stretched/   rest.vtu, deformed.vtu, deform.json
 ///   plan/        path.json, path.vtp, plan.json
 ///   as_planned/  incision.json, centerline.csv, inner_edge.csv, tumor_edge_final.csv, steps.csv, removed.vtu,
 ///                frames.pvd, frames/, kerf.vtp, depth.csv, lag.csv, centerline_DEPTHmm.csv, centerline_final.csv,
@@ -38,24 +38,27 @@ struct RunContext {
 ///   robust/      path.json, path.vtp, robust.json: see write_robust; removed when a product it depends on is remade
 ///   assessment/  assess.json: see write_assessment; removed likewise
 ///
-/// and in each `manifest.json` and `stage.json`: the key of what is in it and a digest of each of its files. No run
-/// reads a product's folder: one of another key is written anew, and one of which a file was changed since is refused.
-/// When a product changes, the folders of those after it are removed; the run that goes on writes them again.
+/// Each of these but cache/ also holds `manifest.json`; a product's folder (labels/ to corrected/) also `stage.json`,
+/// with the product's key and a digest of each file. A run computes nothing from a product's folder: it rewrites a
+/// folder with another key, and refuses one in which a file has changed since. When a product changes, the folders of
+/// the later products, program/, robust/ and assessment/ are removed; the run writes products again as it reaches them.
 class RunFolder : public Inputs, public ProductSink {
  public:
-  /// @param root  is made if missing. @throws DataError if that fails.
+  /// Removes temporary files that a killed run left in `root` and its cache.
+  /// @param root  created if missing  @throws DataError if that fails, or as EntryFolder for its cache.
   RunFolder(CaseFile file, std::filesystem::path root, RunContext context);
 
   [[nodiscard]] const CaseFile& case_file() const { return file_; }
   [[nodiscard]] const std::filesystem::path& root() const { return root_; }
   [[nodiscard]] Cache& cache() { return cache_; }
-  /// Of a product. @param name  see ProductNote.
+  /// Returns the folder of a product. @param name  see ProductNote
   [[nodiscard]] std::filesystem::path folder(const std::string& name) const { return root_ / name; }
-  /// Whether any product is there.
+  /// Whether the folder of any product exists.
   [[nodiscard]] bool has_products() const;
 
   CtVolume read_ct(Monitor& monitor) override;
-  /// @throws DataError also where the CT that is given beside them does not hold the labelled tissue.
+  /// Reads the case's label volume; absent if it names none. @throws DataError as incise::read_labels, or if the case
+  /// also names a CT and labelled tissue lies more than one voxel outside it.
   std::optional<LabelVolume> read_labels(Monitor& monitor) override;
   std::string scan_digest(Monitor& monitor) override;
   std::optional<TetMesh> read_specimen_mesh(Monitor& monitor) override;
@@ -64,15 +67,16 @@ class RunFolder : public Inputs, public ProductSink {
   std::optional<GrayVolume> read_elasticity_map() override;
   std::optional<Contour> read_line() override;
   std::optional<ToolPath> read_given_path() override;
-  /// Of the case, or of its scan or mesh. @throws DataError where that cannot be read.
+  /// Returns specimen_id_of_case. @throws DataError if the scan or mesh has to be read and cannot be.
   [[nodiscard]] std::string specimen_id() override;
-  /// The file of a path that was given, else the case's.
+  /// Returns the file of the given path, or else the case file.
   [[nodiscard]] std::filesystem::path path_name() const override {
     return file_.inputs.tool_path.empty() ? file_.file : file_.inputs.tool_path;
   }
   [[nodiscard]] Verdict advice_against(bool is_corrected) const override;
 
-  /// Removes a program whose verdict does not hold this advice: it was written before the advice was known. Says so.
+  /// Removes a program whose verdict lacks a reason of this advice, because it was written before the advice was known.
+  /// Sends the monitor a warning.
   void remove_program_made_without(const Verdict& advice, Monitor& monitor);
 
   void labels(const ProductNote& note, const Segmentation& segmentation) override;
@@ -83,30 +87,31 @@ class RunFolder : public Inputs, public ProductSink {
            const SimulatedCut& cut) override;
   void correction(const ProductNote& note, const Correction& correction) override;
   void absent(const std::string& name) override;
-  /// Writes each verdict, with the advice of an assessment, beside its path. A path without one gets the verdict of its
-  /// last cut back, if the last run that cut was made with the settings and inputs that the case has now. A verdict
-  /// without a cut adds what it refuses to what is known.
+  /// Writes each verdict, with the advice of an assessment, into the file of its path. A path that gets no verdict of a
+  /// cut gets back the verdict of its last cut, if that cut was made with the case's present settings and inputs. A
+  /// verdict without a cut adds its refusals to the known verdict.
   void verdicts(const std::optional<Verdict>& of_planned, const std::optional<Verdict>& of_corrected) override;
 
-  /// Before a run up to a stage: removes a program and a summary that were made with other settings or inputs than the
-  /// case's, and says so; and the verdicts beside the paths, which a run that cuts notes again at its end. Where the
-  /// run ends before it cuts, the verdicts of the case as it is stay. What a verdict refuses stays in any case.
-  /// @throws DataError where an input cannot be read.
+  /// Prepares the folder for a run up to a stage. Removes a program (with a warning) and a summary that were made with
+  /// other settings, inputs or version than the case has now. Removes the verdicts from the paths' files, unless the
+  /// run ends before it cuts and they still fit the case; a run that cuts writes them again at its end. Refusals stay
+  /// in any case.
+  /// @throws DataError if an input cannot be read.
   void remove_what_is_out_of_date(Stage until, Monitor& monitor);
 
-  /// A manifest for an output folder of this run. @param verdict  of the run; null: the folder has none.
+  /// Writes manifest.json into an output folder of this run. @param verdict  of the run; null: none
   void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);
 
  private:
   [[nodiscard]] ToolPath with_specimen(ToolPath path);
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
   [[nodiscard]] Manifest manifest_now(double wall_s);
-  /// Of everything that a verdict depends on beside its path.
+  /// Returns the key of everything that a verdict depends on beside its path.
   [[nodiscard]] CacheKey key_of_case();
-  /// Whether a result's manifest has the settings, inputs, version and specimen that this case has now.
+  /// Whether a result's manifest states the present settings, inputs, version and specimen of this case.
   [[nodiscard]] bool is_made_as_now(const std::filesystem::path& result);
-  /// Writes the folder of a product, unless it is there already. @throws DataError where a file of it was changed
-  /// since.
+  /// Writes the folder of a product unless it is there already; removes later products and what was made from them.
+  /// @throws DataError if a file in it has changed since it was written.
   void write(const ProductNote& note, const std::function<void(const std::filesystem::path&)>& fill);
 
   CaseFile file_;
@@ -116,20 +121,22 @@ class RunFolder : public Inputs, public ProductSink {
   std::map<std::filesystem::path, std::string> hashes_;  ///< of input files
 };
 
-/// Copies products that the cache of one run holds into that of another which has none of that name. Their keys tell
-/// which of them fit its case, so that runs of one specimen make their common stages once. If `from` has no cache,
-/// nothing is copied.
-/// @param from, to  roots of runs.  @param until  the last stage whose product is copied.
+/// Copies products from the cache of one run into the cache of another, except those whose name the other has already.
+/// The other run uses those whose keys fit its case: runs of one specimen thus compute their common stages once. Copies
+/// nothing if `from` has no cache.
+/// @param from, to  root folders of runs  @param until  the last stage whose product is copied
 /// @throws DataError as EntryFolder.
 void take_products(const std::filesystem::path& from, const std::filesystem::path& to, Stage until);
 
-/// In the folder of a cut that has divided tets: all of them before the cut, with the cell data `skin_faces` (bit f is
-/// set where face f is on the skin) and `gone_step`. The frames name them by the cell data `cell`.
+/// File in the folder of a cut that has split or divided tets: all tets in the stretched tissue before the cut, with
+/// the cell data `skin_faces` (bit f is set if face f is on the skin) and `gone_step`. The frames refer to its tets by
+/// their cell data `cell`.
 inline constexpr const char* kUncutFile = "frames/uncut.vtu";
 
-/// The mesh at rest with what a deformation did to it: point data `displacement_mm`, cell data `von_mises_kpa`.
+/// Returns the mesh at rest, with the results of a deformation as point data `displacement_mm` and cell data
+/// `von_mises_kpa`.
 [[nodiscard]] TetMesh rest_mesh(const TissueModel& model, const TissueState& state);
-/// The same with its vertices where they were moved to.
+/// Returns the same mesh with its vertices at their current positions.
 [[nodiscard]] TetMesh deformed_mesh(const TissueModel& model, const TissueState& state);
 
 }  // namespace incise

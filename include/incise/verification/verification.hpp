@@ -16,10 +16,10 @@ struct CheckCurve {
   std::string name;
   std::vector<double> x;
   std::vector<double> y;      ///< as many as x, all finite
-  bool is_reference = false;  ///< what is known, drawn as a line; else what was found, drawn as marks
+  bool is_reference = false;  ///< true: known values, drawn as a line; false: values found, drawn as marks
 };
 
-/// What a check found, as curves; axes carry their units in the labels.
+/// The result of a check as curves; the labels of the axes include the units.
 struct CheckPlot {
   std::string title;
   std::string x_label;
@@ -29,7 +29,7 @@ struct CheckPlot {
   std::vector<CheckCurve> curves;
 };
 
-/// When a check counts as passed.
+/// The condition under which a check passes.
 enum class Criterion {
   Within,   ///< |found - expected| <= tolerance
   AtLeast,  ///< found >= expected - tolerance
@@ -42,16 +42,16 @@ inline constexpr std::array<std::string_view, 2> kCriterionNames{"within", "at_l
 /// One question with a known answer, put to the solver on this machine.
 struct VerificationCheck {
   std::string name;    ///< lower_case, stable
-  std::string what;    ///< one sentence
+  std::string what;    ///< the question, in one sentence; `name` if the solver gave up
   std::string source;  ///< where the expected value comes from
   std::string unit;    ///< of expected, found and tolerance; "-": a ratio
   double expected = 0.0;
-  double found = 0.0;  ///< not a number where the solver did not get that far; `note` says why
+  double found = 0.0;  ///< NaN if the solver gave up (`note` says why) or values did not converge
   double tolerance = 0.0;
   Criterion criterion = Criterion::Within;
   bool passed = false;
   double wall_s = 0.0;
-  std::string note;  ///< further figures worth a look, or why it failed; may be empty
+  std::string note;  ///< further values, or why the solver gave up; may be empty
   CheckPlot plot;
 };
 
@@ -73,21 +73,21 @@ inline void describe(Visitor& v, VerificationCheck& c) {
 
 struct VerificationSettings {
   std::string only;              ///< runs the checks whose name starts with this; empty: all
-  double tolerance_scale = 1.0;  ///< >= 0, times every tolerance; 0 shows the true residuals
+  double tolerance_scale = 1.0;  ///< >= 0, multiplies every tolerance; 0 shows the true residuals
 };
 
-/// Names of all checks, in the order in which they run.
+/// Returns the names of all checks, in the order in which they run.
 [[nodiscard]] std::vector<std::string> physics_check_names();
 
-/// Runs the checks that settings.only selects, one after the other, each on all workers. No files, no data: every body
-/// is made here. A solver that gives up is a failed check, not an exception. Progress: stage "verifying", and a Notice
-/// with the name as each check starts. @throws InvalidArgument if no name fits or the scale is negative; Cancelled on
-/// request.
-/// @note about a minute on two cores; docs/verification.md tells what each check means.
+/// Runs the checks that settings.only selects, one after the other, each on all workers. Reads no files: every body is
+/// made here. If the solver gives up, the check fails, without an exception. Reports progress as stage "verifying", and
+/// a Notice with the name as each check starts.
+/// @throws InvalidArgument if no name matches or the scale is negative or not finite; Cancelled on request.
+/// @note About a minute on two cores. docs/verification.md explains each check.
 [[nodiscard]] std::vector<VerificationCheck> run_checks(const VerificationSettings& settings, Workers& workers,
                                                         Monitor& monitor);
 
-/// Whether `found` satisfies the check's criterion; never for a value that is not finite.
+/// Returns whether `found` satisfies the check's criterion; false if `found` or `expected` is not finite.
 [[nodiscard]] bool is_met(const VerificationCheck& check);
 
 }  // namespace incise

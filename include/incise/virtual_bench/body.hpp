@@ -14,11 +14,11 @@
 
 namespace incise {
 
-/// How finely the bench computes. Part of what the bench is: results change with it.
+/// Resolution of the bench's computation. It is a part of the bench: results depend on it.
 struct BenchResolution {
   double fine_mm = 1.1;    ///< edge length of the tets round the tumour's ring, > 0
-  double coarse_mm = 6.0;  ///< far from it, >= fine_mm
-  double way_mm = 0.5;     ///< of the tool in a step, > 0
+  double coarse_mm = 6.0;  ///< edge length far from it, >= fine_mm
+  double way_mm = 0.5;     ///< greatest travel of the tool in a step, at its mean speed, > 0
 };
 inline void describe(Visitor& v, BenchResolution& r) {
   v("fine_mm", r.fine_mm, "Edge length of the tets round the tumour's ring.", kPositive);
@@ -26,8 +26,8 @@ inline void describe(Visitor& v, BenchResolution& r) {
   v("way_mm", r.way_mm, "Of the tool in a step.", kPositive);
 }
 
-/// A virtual specimen in its holder: clamped, its tip pulled forward. mm, LPS frame of its CT. Hidden from whoever
-/// plans.
+/// A virtual specimen in its holder: clamped, its tip pulled forward. Lengths in mm, LPS frame of its CT. Hidden from
+/// the planner.
 struct BenchBody {
   Specimen specimen;
   BenchResolution resolution;
@@ -36,30 +36,30 @@ struct BenchBody {
   std::vector<double> toughness_kpa;          ///< per tet: energy density at which it parts
   std::vector<BoundaryFace> skin;             ///< of the uncut body
   std::vector<EmbeddedPoint> tumor_edge;      ///< material points, counter-clockwise seen from above
-  Contour tumor_edge_rest;                    ///< where they lie at rest
+  Contour tumor_edge_rest;                    ///< positions of these points at rest
   TriMesh tumor_rest;                         ///< closed surface of the inclusion at rest
-  Vec3 approach = -Vec3::UnitZ();             ///< as camera and surgeon look
+  Vec3 approach = -Vec3::UnitZ();             ///< unit; the direction in which camera and surgeon look
   double stretch_force_n = 0.0;               ///< the suture's pull, without the load cell's error
   Outcome outcome =
       Outcome::NotConverged;  ///< Success, ElementInverted (in equilibrium, but tets turned inside out) or NotConverged
-  double equilibrium_residual = 0.0;  ///< |free residual| over |reactions|
+  double equilibrium_residual = 0.0;  ///< norm of the free residual divided by the norm of the reactions
   std::size_t inverted_tets = 0;
   double wall_s = 0.0;
 };
 
-/// What a phantom with the specimen's shape, tumour and scanner noise is made from.
+/// Returns the settings of the phantom with the specimen's shape, tumour and scanner noise.
 [[nodiscard]] PhantomSettings phantom_settings(const Specimen& specimen);
 
-/// Makes the body of a specimen, holds and stretches it. The same specimen and resolution give the same bits.
-/// A body that finds no equilibrium is a result: its `outcome` says so, and nothing can be read or cut.
-/// @throws CaseError listing what validate(specimen) finds; Cancelled.
+/// Makes the body of a specimen, clamps and stretches it. The same specimen and resolution give the same bits.
+/// A body without equilibrium is returned, with its `outcome`; do not read or cut it.
+/// @throws CaseError naming the first parameter out of range; Error for a tumour edge off the tissue; Cancelled.
 [[nodiscard]] BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution, Workers& workers,
                                   Monitor& monitor);
 
-/// Where the tumour's edge lies for the given positions of the mesh's vertices.
+/// Returns the tumour's edge for given positions of the mesh's vertices: closed, mm.
 [[nodiscard]] Contour tumor_edge_at(const BenchBody& body, std::span<const Vec3> positions);
 
-/// The skin in a configuration, closed; all vertices of the mesh are kept.
+/// Returns the closed skin of the uncut body for given positions, with all vertices of the mesh.
 [[nodiscard]] TriMesh skin_at(const BenchBody& body, std::span<const Vec3> positions);
 
 }  // namespace incise

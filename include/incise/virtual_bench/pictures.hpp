@@ -6,10 +6,11 @@
 
 namespace incise {
 
-/// The stretched specimen as the camera sees it.
+/// Returns the camera's colour and depth pictures of the stretched specimen.
 [[nodiscard]] FrameShot shoot_frame(const BenchBody& body, const Mat4& T_camera_specimen);
 
-/// The photograph of a cut specimen.
+/// Returns the photograph of a cut specimen.
+/// @throws InvalidArgument for a cut of another body, or settings out of range.
 [[nodiscard]] ColorPicture photograph(const BenchBody& body, const BenchCut& cut,
                                       const PhotographSettings& settings = {});
 

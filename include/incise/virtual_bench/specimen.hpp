@@ -8,19 +8,19 @@
 
 namespace incise {
 
-/// Everything that is hidden about a virtual specimen, its holder, the arm and the camera over it: what a laboratory
-/// cannot look up. Defaults are the middle of each spread; parameter_specs() says spread, source and the reading
-/// through which a parameter shows.
+/// The hidden parameters of a virtual specimen, its holder, the arm and the camera over it. Defaults are the middle of
+/// each spread. parameter_specs() gives the meaning, spread and source of each parameter, and the reading that shows
+/// it.
 struct Specimen {
   std::uint64_t seed = 1;  ///< of the shape, of the fields inside and of all noise
 
-  // The body and the tumour in it, at rest.
+  // The tumour, at rest.
   double tumor_diameter_mm = 18.5;
   double tumor_irregularity = 0.12;
   double tumor_depth_mm = 4.0;
   double tumor_position = 0.46;
 
-  // What it is made of.
+  // Mechanics of the tissue.
   double youngs_modulus_kpa = 12.0;
   double poissons_ratio = 0.46;
   double stiffness_spread = 0.12;
@@ -30,7 +30,7 @@ struct Specimen {
   double relaxing_ratio = 1.5;
   double relaxation_time_s = 6.0;
 
-  // How it is cut.
+  // Cutting.
   double toughness_j_m2 = 300.0;
   double toughness_spread = 0.12;
   double lost_power_w = 15.0;
@@ -40,12 +40,12 @@ struct Specimen {
   double adhesion_limit_kpa_mm = 740.0;
   double heat_percent = 55.0;
 
-  // How it is held.
+  // Holder.
   double clamp_slip_mm = 0.8;
   double stretch_error_mm = 0.0;
   double stretch_angle_deg = 0.0;
 
-  // The arm: where its tip really is against where it should be.
+  // Arm: errors of its tip.
   double robot_offset_x_mm = 0.0;
   double robot_offset_y_mm = 0.0;
   double robot_offset_z_mm = 0.0;
@@ -66,12 +66,13 @@ struct Specimen {
 };
 
 using ParameterSpec = HiddenParameter<Specimen>;
-/// All of them, in the order of Specimen.
+/// Returns all hidden parameters, in the order of Specimen.
 [[nodiscard]] std::span<const ParameterSpec> parameter_specs();
 
 void describe(Visitor& v, Specimen& specimen);
 
-/// A specimen at random. Each parameter has a stream of its own: a new one leaves the others as they were.
+/// Draws a specimen at random. Each parameter has its own random stream, so a new parameter leaves the others
+/// unchanged.
 [[nodiscard]] Specimen draw_specimen(std::uint64_t seed);
 
 }  // namespace incise

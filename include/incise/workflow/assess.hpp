@@ -10,7 +10,7 @@
 
 namespace incise {
 
-/// What is known of the specimens that a calibration is of; a list is shorter where something was not measured.
+/// Quantities of a calibration's specimens. A list is shorter if something was not measured.
 struct CalibratedRange {
   std::vector<double> youngs_modulus_kpa;
   std::vector<double> compliance_mm_n;  ///< stretch over pull
@@ -19,28 +19,30 @@ struct CalibratedRange {
   std::vector<double> signed_error_mm;  ///< mean along the ring, as photographed
 };
 
+/// What is known beside the case, and the rules of the judgement.
 struct AssessmentRequest {
   ScenarioRequest scenarios;
   EligibilityRules rules;
   CalibratedRange calibrated;
-  RegistrationQuality registration;  ///< of this specimen
-  bool is_registered = true;         ///< nothing argued against its transform
-  bool is_calibration_virtual = false;  ///< a specimen of the calibration is a synthetic body
+  RegistrationQuality registration;     ///< of this specimen
+  bool is_registered = true;            ///< whether nothing objects to its transform
+  bool is_calibration_virtual = false;  ///< whether a specimen of the calibration is a synthetic body
 };
 
+/// Result of assess.
 struct Assessment {
   Eligibility eligibility;
   EligibilityEvidence evidence;
-  std::optional<CorrectionOutlook> outlook;       ///< absent: there was no correction to look at
-  std::vector<std::string> notes;                 ///< what was not known, and what that costs
-  EligibilityRules rules;                         ///< that it was judged by
+  std::optional<CorrectionOutlook> outlook;  ///< absent: there was no correction
+  std::vector<std::string> notes;            ///< what was not known, and the consequence
+  EligibilityRules rules;                    ///< by which it was judged
   double registration_scale = 1.0;
 };
 void describe(Visitor& v, Assessment& a);
 
-/// Should this specimen be cut along the corrected path? Gathers what is known of it, cuts both paths in the tissue
-/// that the calibration expects, adds what its photographs say of real cuts, and judges. A calibration of virtual
-/// specimens never advises to correct a real one. See docs/models/eligibility.md.
+/// Assesses whether a specimen should be cut along its corrected path. Gathers what is known of the specimen, cuts both
+/// paths in the tissue that the calibration expects, adds the differences of real cuts that its photographs show, and
+/// judges. A calibration of virtual specimens never advises to correct a real one. See docs/models/eligibility.md.
 /// @param done  the case's study up to Stage::Verify, however it ended.
 /// @throws as correct_robustly.
 [[nodiscard]] Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,
@@ -49,11 +51,11 @@ void describe(Visitor& v, Assessment& a);
 
 inline constexpr const char* kVirtualCalibration =
     "the calibration is of virtual specimens and this one is real: how its tissue drags was never measured on tissue";
-/// What is left of a judgement of a real specimen whose calibration is of synthetic bodies: at best to cut as planned,
-/// and kVirtualCalibration among the reasons.
+/// Returns a judgement of a real specimen as a calibration of synthetic bodies allows it: at best to cut as planned,
+/// with kVirtualCalibration among the reasons.
 [[nodiscard]] Eligibility by_virtual_calibration(Eligibility judged);
 
-/// How far the case displaces the tissue that it pulls, mm: the farthest of its displacements; 0: it does not pull.
+/// Returns how far the case displaces the tissue, mm: the greatest of its displacements; 0 without any.
 [[nodiscard]] double stretch_mm(const TissueModel& model);
 
 }  // namespace incise

@@ -16,24 +16,24 @@
 
 namespace incise {
 
-/// A specimen that was cut and photographed, and the case that says how it was held and along which path.
+/// A specimen that was cut and photographed, and the case that states how it was held and along which path it was cut.
 struct CalibrationSubject {
   PhotographedCut photographed;
-  std::string photograph_file;                      ///< named where the photograph cannot be used
-  std::string case_file;                            ///< named where the case cannot be used
+  std::string photograph_file;                      ///< file named in messages about the photograph
+  std::string case_file;                            ///< file named in messages about the case
   Case settings;                                    ///< plan.kind: ring
-  std::optional<RegistrationQuality> registration;  ///< kept for whoever compares a further specimen with this one
+  std::optional<RegistrationQuality> registration;  ///< kept, so that later specimens can be compared with this one
   Inputs* inputs = nullptr;                         ///< of the case; not null
-  Cache* cache = nullptr;                           ///< of what is made of the case; not null
-  ProductSink* sink = nullptr;                      ///< of what is made of the case; null: nobody looks
+  Cache* cache = nullptr;                           ///< for products of the case; not null
+  ProductSink* sink = nullptr;                      ///< receives products of the case; may be null
 };
 
-/// The key of a simulated cut of a specimen. @param held  digest of the specimen, held and planned on: all that its
-/// cuts depend on beside their setting.
+/// Returns the cache key of a simulated cut of a specimen.
+/// @param held  digest of the held and planned specimen: everything that determines its cuts except their setting.
 [[nodiscard]] CacheKey calibration_run_key(const std::string& held, const RunSetting& setting);
 
-/// What is simulated. Defaults: the paper's grid; for the fit, seven cuts of each specimen, one or two near the place
-/// that they point to, and one that checks.
+/// Simulations of a calibration. Defaults: the paper's grid; for the fit, seven cuts of each specimen, then one or two
+/// near the fitted drag length, and one that checks the fit.
 struct CalibrationRequest {
   CalibrationMethod method = CalibrationMethod::Fit;
   std::vector<double> speeds_mm_s{1.0, 5.0, 9.0, 13.0, 17.0};
@@ -61,15 +61,15 @@ inline void describe(Visitor& v, CalibrationRequest& r) {
     "Of ln(stiffness factor) where every specimen's force was measured.", kPositive);
   describe(v, r.fit);
 }
-/// Every violation; empty: valid.
+/// Returns every violation; empty if the request is valid.
 [[nodiscard]] std::vector<Problem> validate(const CalibrationRequest& request);
 
-/// Finds the settings with which simulated cuts match the photographed ones. Simulations run side by side, one
-/// thread each; those that the cache has are not made again. A simulation that fails is a row.
-/// @throws CaseError for a case that cannot be held, stretched or planned (the file is named); DataError for a
-/// photograph
-///         that is mirrored, turned far, or does not show a ring round the tumour; InvalidArgument for a request that
-///         is not valid; Cancelled when the monitor asks to stop: finished runs are in the cache.
+/// Finds the settings with which simulated cuts match the photographed ones. Simulations run side by side, one thread
+/// each; those in the cache are not repeated. A simulation that fails is a row of the result.
+/// @param subjects  at least one; all with the same cut.rule.
+/// @throws CaseError, naming the file, for a case that cannot be held, stretched or planned, or has another cut.rule;
+/// DataError for a photograph that is mirrored, turned far, of another case, or without a ring round the tumour;
+/// InvalidArgument for an invalid request; Cancelled when the monitor asks to stop: finished runs are in the cache.
 [[nodiscard]] Calibration calibrate(const std::vector<CalibrationSubject>& subjects, const CalibrationRequest& request,
                                     Cache& runs, Workers& workers, Monitor& monitor);
 

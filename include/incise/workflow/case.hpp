@@ -20,12 +20,13 @@
 
 namespace incise {
 
-/// Edge lengths of the mesh that is made from a label.
+/// Edge lengths, mm, of the mesh that is made from labels.
 struct MeshingChoice {
-  std::optional<double> fine_mm;    ///< in the band that the needle can reach; absent: as default_lengths says
-  std::optional<double> coarse_mm;  ///< far from the cut; absent: as default_lengths says
+  std::optional<double> fine_mm;    ///< in the band that the needle can reach; absent: see default_lengths
+  std::optional<double> coarse_mm;  ///< far from the cut; absent: see default_lengths
   int tets = 0;                     ///< count to aim for by scaling both lengths; 0: as the lengths give
-  std::optional<double> survey_mm;  ///< of the coarse mesh with which the planned cut is found in the unstretched body; absent: the default coarse_mm
+  /// Of the coarse mesh with which the planned cut is found in the unstretched body; absent: the default coarse_mm.
+  std::optional<double> survey_mm;
 };
 inline void describe(Visitor& v, MeshingChoice& m) {
   v({"fine_mm",
@@ -46,7 +47,7 @@ inline void describe(Visitor& v, MeshingChoice& m) {
 
 inline constexpr Range kLabelRange{-1e9, 1e9};
 
-/// What the tets with one value of the mesh's cell array `label` are made of, where they differ from the rest.
+/// Material of the tets with one value of the mesh's cell array `label`, where it differs from the rest.
 struct LabelMaterial {
   int label = 0;
   std::optional<double> youngs_modulus_kpa;
@@ -59,14 +60,15 @@ inline void describe(Visitor& v, LabelMaterial& m) {
   v("poissons_ratio", m.poissons_ratio, "Poisson's ratio there; absent: as elsewhere.", kPoissonsRatioLimits);
 }
 
-/// Which differences of material within the specimen a study takes from its mesh, or from what is laid on it
+/// Which differences of material within the specimen a study takes from its mesh, or from the sources laid on it
 /// (material_sources.hpp).
 struct MaterialVariation {
-  bool from_mesh = false;             ///< cell data youngs_modulus_kpa, poissons_ratio, fibre_direction (those that are there)
+  /// Use the mesh's cell data youngs_modulus_kpa, poissons_ratio and fibre_direction, as far as they exist.
+  bool from_mesh = false;
   std::optional<double> tumor_modulus_kpa;  ///< Young's modulus in the tumour's surface; absent: as elsewhere
-  std::optional<FibreField> fibre_field;    ///< absent: directions are the mesh's or the material's
+  std::optional<FibreField> fibre_field;    ///< absent: directions are those of the mesh or the material
   std::vector<LabelMaterial>
-      labels;  ///< laid over the others; tets with a label that is not listed keep what they have
+      labels;  ///< override the others; tets with other labels keep their material
 };
 inline void describe(Visitor& v, MaterialVariation& m) {
   v("from_mesh", m.from_mesh,
@@ -82,7 +84,7 @@ inline void describe(Visitor& v, MaterialVariation& m) {
     "Parts with another stiffness, by the mesh's cell array 'label' or by ct.labels; absent: none.");
 }
 
-/// How tough the tets with one value of the mesh's cell array `label` are.
+/// Toughness of the tets with one value of the mesh's cell array `label`.
 struct LabelToughness {
   int label = 0;
   double toughness = 1.0;  ///< relative to the reference tissue, > 0
@@ -92,10 +94,11 @@ inline void describe(Visitor& v, LabelToughness& m) {
   v("toughness", m.toughness, "There; the reference tissue has 1.", {1e-3, 1e3});
 }
 
-/// How tough the specimen is against cutting, relative to the tissue for which speed and dullness hold; 1 where nothing else is said.
+/// Toughness of the specimen against cutting, relative to the tissue for which speed and dullness hold; 1 unless
+/// stated.
 struct ToughnessVariation {
-  bool from_mesh = false;              ///< the mesh's cell array `toughness`
-  std::vector<LabelToughness> labels;  ///< laid over `from_mesh`
+  bool from_mesh = false;              ///< use the mesh's cell array `toughness`
+  std::vector<LabelToughness> labels;  ///< override `from_mesh`
 };
 inline void describe(Visitor& v, ToughnessVariation& m) {
   v("toughness", m.labels,
@@ -115,8 +118,8 @@ inline constexpr std::array<std::string_view, 2> kTumorConfigurationNames{"stret
 
 enum class CompensationMethod {
   Default,  ///< pass by pass, until the cut lies where it was intended
-  Paper,    ///< each waypoint moves once by the error measured there
-  Profile,  ///< each waypoint moves once by an error that photographs of other cuts showed in its direction
+  Paper,    ///< each waypoint moves once, by the error measured in its direction
+  Profile,  ///< each waypoint moves once, by the error that photographs of other cuts showed in its direction
 };
 inline constexpr std::array<std::string_view, 3> kCompensationMethodNames{"default", "paper", "profile"};
 [[nodiscard]] constexpr Names names_of(CompensationMethod) {
@@ -159,62 +162,64 @@ inline void describe(Visitor& v, CompensationChoice& m) {
      "mm"},
     m.photographed_mm, {-10.0, 10.0});
 }
-/// Lists that are too long, and what the method would not use: photographed_mm, residual_mm, simulated_share, and
-/// bias_mm with method profile.
+/// Returns every violation: lists that are too long or missing, and fields that the method does not use:
+/// photographed_mm, residual_mm, simulated_share, and bias_mm with method profile.
 [[nodiscard]] std::vector<Problem> validate(const CompensationChoice& choice);
-/// Whether it expects errors of the planned path by direction: they hold for a ring as it was planned, no other path.
+/// Returns whether the choice expects errors of the planned path by direction. These hold for a ring as planned, and
+/// for no other path.
 [[nodiscard]] bool expects_by_direction(const CompensationChoice& choice);
 
-/// What a study asks for, whatever files it came from. Every default is written here or in the structs that it holds.
+/// Settings of a study, independent of files. Every default is here or in the structs that it contains.
 struct Case {
   std::string title = "Incision study";
-  std::string specimen_id;                  ///< see io/specimen_id.hpp; empty: follows from the scan or mesh
-  bool is_virtual = false;                  ///< the specimen is synthetic; said on every page that is made of it
+  std::string specimen_id;  ///< see io/specimen_id.hpp; empty: follows from the scan or mesh
+  bool is_virtual = false;  ///< the specimen is synthetic; stated on every page made of it
   SegmentationSettings segmentation;
   MeshingChoice meshing;
   Material material;
   MaterialVariation variation;
   std::optional<std::vector<Constraint>> constraints;  ///< absent: see default_constraints
   Vec3 gravity_mm_s2{0.0, 0.0, -9810.0};
-  std::optional<double> time_since_stretch_s;  ///< until the cut, for viscous tissue; absent: it has relaxed
+  std::optional<double> time_since_stretch_s;  ///< from stretch to cut, for viscous tissue; absent: it has relaxed
   TumorConfiguration tumor_configuration = TumorConfiguration::Stretched;
   double surface_tolerance_mm = 5.0;        ///< farthest that a tumour edge may lie off the surface, along the approach
   PlanSettings plan;
   Tool tool;
-  CutSettings cut;                          ///< without its power, which is the plan's
+  CutSettings cut;  ///< without its power, which is in plan
   ToughnessVariation toughness;
   ThermalSettings thermal;
   CompensationChoice compensation;
   double close_margin_mm =
-      kCloseMarginMm;  ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
-  int frames = 24;                          ///< moments of the cut that are kept for pictures
-  std::optional<Mat4> T_robot_sim;          ///< where the specimen lies under the robot, until registration finds it
-  std::optional<Mat4> T_flange_tool;        ///< the needle's tip (z along the needle) on the arm's flange; absent: 150 mm in front of it
+      kCloseMarginMm;               ///< clinical cut-off below which a negative margin is too close (paper III-A.1)
+  int frames = 24;                  ///< moments of the cut that are kept for pictures
+  std::optional<Mat4> T_robot_sim;  ///< place of the specimen in the robot's base frame; rigid, mm; absent: no program
+  std::optional<Mat4> T_flange_tool;  ///< the needle's tip (z along the needle); absent: 150 mm before the flange
 };
 
-/// The cell array of Young's modulus that lay_on_mesh (material_sources.hpp) lays on a mesh, kPa.
+/// Name of the cell array of Young's modulus, kPa, that lay_on_mesh (material_sources.hpp) sets.
 inline constexpr const char* kLaidModulusArray = "laid_modulus_kpa";
 
-/// Of the material and what varies in it: every number out of its range, and what would not act.
+/// Returns every violation of the material and its variation: numbers out of range, and settings without effect.
 [[nodiscard]] std::vector<Problem> validate(const Material& material, const MaterialVariation& variation);
 
-/// The material of each tet, as far as the study lets it vary; nothing does: empty lists. What was laid on the mesh
-/// holds over what it carries, and labels over both.
+/// Returns the material of each tet, as far as the study varies it; empty lists if nothing varies. Values laid on the
+/// mesh override the mesh's own, and labels override both.
 /// @throws InvalidArgument for a stiff tumour that was not laid on the mesh;
-/// @throws CaseError (field specimen.material.from_mesh or .labels[i]) when the mesh does not carry what the study asks
-/// for; (.fibre_field…) when it has fibres already, or the field's regions do not fit the mesh (fibre_directions), or
-/// its potential does not converge.
+/// @throws CaseError (field specimen.material.from_mesh or .labels[i]) if the mesh lacks data that the study requires;
+/// (.fibre_field…) if the mesh has fibres already, if the field's regions do not fit the mesh (fibre_directions), or if
+/// its potential does not converge; (other fields of specimen.material) for violations of validate.
 [[nodiscard]] MaterialField material_field(const TetMesh& mesh, const Material& material, const MaterialVariation& variation);
 
-/// The toughness of each tet, as far as the study lets it vary; it does not: an empty list.
-/// @throws CaseError (field cut.toughness_from_mesh or cut.toughness[i]) when the mesh does not carry what the study asks for, or a number that
-///         is not above 0.
+/// Returns the toughness of each tet, relative to the reference tissue; an empty list if the study does not vary it.
+/// @throws CaseError (field cut.toughness_from_mesh or cut.toughness[i]) if the mesh lacks data that the study
+/// requires, or has a number that is not above 0.
 [[nodiscard]] std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& variation);
 
-/// The paper's set-up (II-A) for a tongue in LPS: posterior 15 mm clamped, anterior 10 mm pulled 20 mm forward, underside resting on a platform
-/// at the mesh's lowest point. @throws CaseError for a body shorter than 40 mm along y, for which these lengths are not made.
+/// Returns the paper's set-up (II-A) for a tongue in LPS: posterior 15 mm clamped, anterior 10 mm pulled 20 mm forward,
+/// underside resting on a platform at the mesh's lowest point.
+/// @throws CaseError for a body shorter than 40 mm along y, to which these lengths do not apply.
 [[nodiscard]] std::vector<Constraint> default_constraints(const TetMesh& mesh);
-/// The same as a sentence without its full stop: "The back end (15 mm) is clamped, …".
+/// Describes these constraints in a sentence without its full stop: "The back end (15 mm) is clamped, …".
 [[nodiscard]] std::string default_hold_in_words();
 
 }  // namespace incise

@@ -10,14 +10,15 @@
 
 namespace incise {
 
-/// The skin of a specimen as it lies now, stretched or not, which knows which of its places are not the specimen's own.
+/// Skin of a specimen at its current place, stretched or not, which knows which of its places are artificial.
 class PlacedSkin {
  public:
-  /// @param at_rest  closed. @param now  where its vertices lie now. @pre one place for each vertex.
+  /// @param at_rest  closed, mm. @param now  current positions of its vertices, mm.
+  /// @throws InvalidArgument unless there is one position for each vertex.
   PlacedSkin(TriMesh at_rest, std::span<const Vec3> now, MadeSkin made);
 
   [[nodiscard]] const SurfaceQuery& surface() const { return surface_; }
-  /// As MadeSkin, for the point of the skin that is nearest to a place as it lies now.
+  /// As in MadeSkin, for the point of the skin nearest to a current place, mm.
   [[nodiscard]] std::optional<RegionFace> cut_at(const Vec3& place) const;
   [[nodiscard]] bool is_painted(const Vec3& place) const;
 
@@ -32,26 +33,27 @@ class PlacedSkin {
   SurfaceQuery surface_;
 };
 
-/// Steps in which a margin is looked for, and the greatest that is tried.
+/// Step of the search for a margin, and the greatest margin that is tried.
 inline constexpr double kMarginStepMm = 0.5;
 inline constexpr double kMostMarginMm = 20.0;
 
-/// How much lateral margin a ring round an edge can have.
+/// Greatest lateral margin of a ring round an edge.
 struct MarginRoom {
-  std::optional<double> greatest_mm;  ///< nothing: none of those that were tried fits
-  bool is_more_possible = false;      ///< greatest_mm is kMostMarginMm, and nothing beyond was tried
-  bool is_edge_cut = false;           ///< the edge itself lies on skin that the region or the scan's end has made
+  std::optional<double> greatest_mm;  ///< nullopt: no margin that was tried fits
+  bool is_more_possible = false;      ///< greatest_mm is kMostMarginMm; larger margins were not tried
+  bool is_edge_cut = false;           ///< the edge lies on skin that the region of interest or the end of the scan made
 };
 
-/// The greatest lateral margin, of kMarginStepMm, twice that, and so on up to kMostMarginMm, at which plan_ring finds a
-/// path round an edge, at the depth that the settings have, and no point of the path is on skin that the region or the
-/// scan's end has made. It is found by bisection: a margin that fits is taken to fit with less, too.
-/// @param edge  closed, on the skin, mm. @param above_mm  margins up to it are not tried: a case asks for more than the
-/// electrode's radius. O(log(steps)) plans.
+/// Finds the greatest multiple of kMarginStepMm, up to kMostMarginMm, that is possible as lateral margin: plan_ring
+/// finds a path round the edge, at the depth in the settings, and no point of the path lies on skin that the region of
+/// interest or the end of the scan made. Found by bisection, which assumes that smaller margins than one that fits also
+/// fit.
+/// @param edge  closed, on the skin, mm. @param above_mm  margins up to this are not tried: a case requires more than
+/// the electrode's radius. O(log(steps)) plans.
 [[nodiscard]] MarginRoom margin_room(const PlacedSkin& skin, const Contour& edge, const PlanSettings& settings,
                                      double above_mm);
 
-/// The same as a sentence without its full stop: "A lateral margin of at most 3.5 mm fits here".
+/// Describes the result in a sentence without its full stop: "A lateral margin of at most 3.5 mm fits here".
 [[nodiscard]] std::string in_words(const MarginRoom& room);
 
 }  // namespace incise

@@ -11,41 +11,40 @@
 
 namespace incise {
 
-/// Where a specimen's stiffness comes from beside its settings and its mesh: lengths mm, LPS, tissue at rest. What the
-/// case does not use is absent.
+/// Sources of a specimen's stiffness beside its settings and its mesh: lengths in mm, LPS, tissue at rest. Sources that
+/// the case does not use are absent.
 struct MaterialSources {
-  std::optional<LabelVolume> labels;         ///< in which the tissue was found
-  std::optional<GrayVolume> elasticity_kpa;  ///< Young's modulus, long-time; 0 or less: not known there
+  std::optional<LabelVolume> labels;         ///< those in which the tissue was found
+  std::optional<GrayVolume> elasticity_kpa;  ///< Young's modulus, long-time; 0 or less: unknown there
   std::optional<TriMesh> tumor;              ///< closed
 };
 
-/// Reads what the case asks for. @throws CaseError (fields specimen.material.…) where it asks for what it does not
-/// name.
+/// Reads the sources that the case uses. @throws CaseError (fields specimen.material.…) if the case uses a source that
+/// it does not name.
 [[nodiscard]] MaterialSources read_material_sources(const Case& settings, Inputs& inputs, Monitor& monitor);
 
-/// Changes with what `lay_on_mesh` would lay. Empty: nothing.
+/// Returns a digest that changes with the values that `lay_on_mesh` would lay; empty without sources.
 [[nodiscard]] std::string digest_of(const MaterialSources& sources);
 
-/// What an elasticity map says of a specimen.
+/// How an elasticity map covers a specimen.
 struct MapCoverage {
-  double share = 0.0;  ///< of the tets, where it is above 0
+  double share = 0.0;  ///< fraction of the tets at which the map is known
   double least_kpa = 0.0;
   double greatest_kpa = 0.0;
 };
 
-/// Gives the cell arrays of a mesh at rest the values that the sources have at the tets' centroids, so that
-/// material_field finds them there:
-/// - `label`, of the nearest of the 27 voxels round it that are tissue, where the case lists labels and the mesh has
-///   none of its own; 0: none is;
-/// - kLaidModulusArray: of the elasticity map (trilinear between the voxels that are above 0; where none is, the mesh's
-///   own value or the case's), and in the tumour's surface that of specimen.material.tumor_modulus_kpa. A mesh that
-///   came with this array loses it.
-/// @returns what the map covers; nothing: there is none.
-/// @throws CaseError for a map that is known at no tet, or has a value that no tissue has, or a surface that holds no
-/// tet.
+/// Sets cell arrays of a mesh at rest from the sources, at the tets' centroids, for material_field:
+/// - `label`, if the sources have labels and the mesh has no such array: the label of the nearest tissue voxel among
+/// the 27 around the centroid, or 0 if none of these is tissue;
+/// - kLaidModulusArray: the modulus by the elasticity map (trilinear between the voxels above 0; where there is none,
+/// the mesh's own value or the case's), and inside the tumour's surface specimen.material.tumor_modulus_kpa. An array
+/// of this name that the mesh already had is removed.
+/// @returns the coverage of the map; nullopt without a map.
+/// @throws CaseError for a map that is known at no tet or has a value that no tissue has, or for a surface that
+/// contains no tet.
 std::optional<MapCoverage> lay_on_mesh(const Case& settings, const MaterialSources& sources, TetMesh& mesh);
 
-/// What argues against an elasticity map: that it leaves most of the specimen out.
+/// Returns the objection to an elasticity map that leaves out most of the specimen.
 [[nodiscard]] Verdict verdict_of_map(const MapCoverage& coverage);
 
 }  // namespace incise

@@ -4,8 +4,9 @@
 
 namespace incise {
 
-/// A path in simulation coordinates, given in the robot's base frame: p_robot = T_robot_sim * p_sim, axes turned along.
-/// @param T_robot_sim  rigid (scale 1), mm.  @throws InvalidArgument if the path is in the robot's frame already, or not in the stretched tissue.
+/// Transforms a path, with its axes and tumour edge, from simulation coordinates to the robot's base frame: p_robot =
+/// T_robot_sim * p_sim.
+/// @param T_robot_sim  rigid (scale 1), mm.  @throws InvalidArgument unless the path is in frame sim_stretched.
 [[nodiscard]] ToolPath in_robot_frame(ToolPath path, const Mat4& T_robot_sim);
 
 }  // namespace incise

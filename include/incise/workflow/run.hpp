@@ -36,23 +36,25 @@ struct Run {
 /// checks and an incomplete replay are added to the verdict; the gate is open if the verdict allows the program.
 /// @param options  `until` is not read: all stages run.
 /// @param accepted  ids of the cautions that a person accepts.
-/// @throws as run_study; CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place beyond the arm's reach;
-/// DataError naming the path (Inputs::path_name) if no tool can follow it.
+/// @throws as run_study and require_place_for_arm; DataError naming the path (Inputs::path_name) if no tool can follow
+/// it.
 [[nodiscard]] Run run(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options,
                       std::span<const std::string> accepted, Workers& workers, Monitor& monitor, ProductSink& sink);
-/// The same on all threads of the machine, without messages or files.
+/// Runs the same on all threads of the machine, without messages or files.
 [[nodiscard]] Run run(const Case& settings, Inputs& inputs, Cache& cache, std::span<const std::string> accepted = {});
 
-/// Copy what a case says of the arm, and of the limits that its program is checked against; the rest stays.
+/// Copies the arm's settings of a case, or the limits of the checks on its program. Other fields keep their values.
 void take_arm(const Case& settings, ArmSetup& setup);
 void take_limits(const Case& settings, CheckSettings& limits);
 
-/// Checks that a program can hold the case's tool. @throws CaseError (tool.kind) for one that is not round: a program
-/// does not turn it into its direction of travel.
+/// Checks that a program can hold the case's tool.
+/// @throws CaseError (tool.kind) for a tool that is not round, because a program does not turn the tool into its
+/// direction of travel.
 void require_round_tool(const Case& settings);
 
-/// Checks that a case that requests a program states a place for the arm.
-/// @throws CaseError (robot.T_robot_sim, robot.T_flange_tool) for a place that the arm cannot reach.
+/// Checks the arm's transforms in a case that requests a program (has robot.T_robot_sim).
+/// @throws CaseError (robot.T_robot_sim) for a specimen more than 10 m from the base; (robot.T_flange_tool) for a tip
+/// nearer to the flange than the needle's length, or more than 10 m from it.
 void require_place_for_arm(const Case& settings);
 
 }  // namespace incise

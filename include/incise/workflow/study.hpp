@@ -50,41 +50,42 @@ inline void describe(Visitor& v, StageReport& r) {
   v("wall_s", r.wall_s, "Time that it took.");
 }
 
-/// What a study has made so far; later parts are absent when it was asked to stop earlier or could not go on.
+/// Results of a study so far. Later parts are absent if the study was asked to stop earlier or could not continue.
 struct Study {
   std::vector<StageReport> stages;
   std::optional<Segmentation> segmentation;   ///< absent when not needed
   std::shared_ptr<const TissueModel> model;
   std::optional<StaticResult> stretched;
-  std::optional<ToolPath> plan;               ///< the intended path
-  std::optional<ToolPath> followed;           ///< by the first cut: the planned path, or the one that was given
+  std::optional<ToolPath> plan;      ///< the intended path
+  std::optional<ToolPath> followed;  ///< path of the first cut: the planned path, or the given one
   std::optional<SimulatedCut> as_planned;
   std::optional<Correction> correction;
   std::optional<SimulatedCut> corrected;
   bool is_accepted = false;     ///< whether the correction is accepted: objection_to finds nothing
-  std::string correction_note;  ///< why it is not, as the end of a sentence; empty: it is, or there is none
-  Verdict about_inputs;   ///< what was found before anything was cut: scan, contour against surface
-  Verdict verdict;        ///< of the run, see verdict_of_run; complete once the last stage asked for has run
-  /// How it ended: that of the last simulated cut, or NotConverged/Cancelled of the stage that could not go on.
+  std::string correction_note;  ///< why it is not accepted, as the end of a sentence; empty: it is, or there is none
+  Verdict about_inputs;   ///< objections before any cut: scan, elasticity map, tumour edge against surface
+  Verdict verdict;        ///< of the run, see verdict_of_run; complete once the last requested stage has run
+  /// Outcome of the last simulated cut, or NotConverged/Cancelled of the stage that could not continue.
   Outcome outcome = Outcome::Success;
 };
 
-/// The cut along the path that a program would follow: the corrected one where the correction is accepted, else the first. Null: none.
+/// Returns the cut along the path that a program would follow: the corrected path if the correction is accepted,
+/// otherwise the path that was cut first. Null: no such cut.
 [[nodiscard]] const SimulatedCut* verifying_cut(const Study& study);
 
-/// Most passes of the compensation after the first cut; four more where something argues against the nearest ring.
+/// Greatest number of passes after the first cut: usually, and if there is an objection to the nearest ring.
 inline constexpr int kUsualPasses = 3;
 inline constexpr int kMostPasses = 7;
-/// The name of a cut along the path of a pass; that of pass 0 is as_planned.
+/// Returns the name of the cut of a pass: as_planned for pass 0.
 [[nodiscard]] std::string name_of_pass(int pass);
-/// The slot of a cache in which a cut under way is kept. @param cut  as_planned, pass_1 …, corrected.
+/// Returns the cache slot of a checkpoint of an unfinished cut. @param cut  as_planned, pass_1 …, corrected.
 [[nodiscard]] std::string checkpoint_slot(const std::string& cut);
 
-/// A cut was interrupted; what was done of it is kept.
+/// Thrown if a cut is interrupted; its progress is kept.
 class CutInterrupted : public Cancelled {
  public:
   CutInterrupted(const std::string& what, std::string slot) : Cancelled(what), slot_(std::move(slot)) {}
-  /// Of the cache, in which its checkpoint is.
+  /// Slot of the cache that holds its checkpoint.
   [[nodiscard]] const std::string& slot() const { return slot_; }
 
  private:
@@ -92,65 +93,75 @@ class CutInterrupted : public Cancelled {
 };
 
 /// Called during a cut, at each step from which it could be resumed (see ProgressKeeper). @param cut  as_planned,
-/// pass_1 …
+/// pass_1 …, corrected.
 using CutWatch =
     std::function<void(const std::string& cut, const TissueModel& model, const IncisionProgress& progress)>;
 
-/// How far a run goes, and what it does with cuts that were interrupted.
+/// How far a run goes, and how it treats interrupted cuts.
 struct RunOptions {
   Stage until = Stage::Verify;
   bool must_resume =
-      false;  ///< go on from the checkpoint of the cut that comes next, or refuse before anything is computed
+      false;  ///< continue from the checkpoint of the next cut, or refuse before anything is computed
   double checkpoint_s =
-      30.0;  ///< least time between two checkpoints of a cut; one that is interrupted always leaves one
+      30.0;  ///< least time between two checkpoints of a cut; an interrupted cut always leaves one
   CutWatch watch = {};  ///< may be empty
 };
 
 /// Runs the loop of the paper on one specimen up to `until`: segment, mesh around the planned cut, clamp and stretch,
 /// plan, cut, correct the path by the measured error and cut again, once or until the cut lies where it was intended.
-/// Products that the cache already has are used; new ones are kept as soon as they are made, a cut under way at each
+/// Products in the cache are reused; new ones are kept as soon as they are complete, a cut in progress at each
 /// checkpoint.
-/// @throws CaseError or DataError of the stage that cannot use what it was given; Cancelled when the monitor asks to
-/// stop between products; CutInterrupted when it asks to within a cut.
+/// @throws CaseError or DataError of the stage that cannot use its inputs; Cancelled when the monitor asks to stop
+/// between products; CutInterrupted when it asks to stop within a cut.
 [[nodiscard]] Study run_study(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options,
                               Workers& workers, Monitor& monitor, ProductSink& sink);
 [[nodiscard]] Study run_study(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options,
                               Workers& workers, Monitor& monitor);
 
-/// The single stages, for those who have the inputs in memory.
-/// Evaluates a simulated incision: mid-line and, for a ring, inner edge; and heat along the path.
-/// @param followed  by the tool: its speeds and depths count for heat.  @param tets  of the mesh before the cut.
-/// Its verdict expects nothing beyond the simulation, see verdict_of_cut.
+// The single stages, for inputs in memory.
+
+/// Evaluates a simulated incision: mid-line and, for a ring, inner edge; and heat along the path. The verdict expects
+/// no errors beyond the simulation, see verdict_of_cut.
+/// @param followed  path of the tool; its speeds and depths determine the heat.
+/// @param tets      number of tets of the mesh before the cut.
 [[nodiscard]] SimulatedCut judge(const Case& settings, IncisionResult incision, const ToolPath& followed,
                                  const ToolPath& intended, std::size_t tets);
+/// Makes a mesh of the unstretched body that is fine around the planned cut: stretches a coarse mesh, plans on it, and
+/// carries the path back to rest.
+/// @throws CaseError as plan_on and tissue_of, without equilibrium of the coarse mesh, or for fine_mm above coarse_mm.
 [[nodiscard]] MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occupancy,
                                                   const std::optional<Contour>& tumor_edge,
                                                   const std::optional<Contour>& line, Workers& workers,
                                                   Monitor& monitor, const MadeSkin& made_skin = {},
                                                   const MaterialSources& sources = {});
-/// The specimen as the case holds it: material (label by label, where it varies), constraints (the default ones, where none are given)
-/// and gravity on a mesh. @throws CaseError as make_tissue_model and material_field.
+/// Returns the specimen as the case holds it: material (varied by tet), constraints (the default ones if none are
+/// given) and gravity on a mesh. @throws CaseError as make_tissue_model, material_field, toughness_of and
+/// default_constraints.
 [[nodiscard]] TissueModel tissue_of(const Case& settings, TetMesh mesh);
+/// Finds the equilibrium of the clamped and stretched tissue.
 [[nodiscard]] StaticResult stretch(const TissueModel& model, Workers& workers, Monitor& monitor);
-/// The intended path on the stretched skin. A margin that does not fit is refused with the greatest that does.
-/// @param made_skin  of the tissue at rest; none for a specimen that was given as a mesh.
+/// Plans the intended path on the stretched skin. The refusal of a margin that does not fit names the greatest that
+/// does.
+/// @param made_skin  of the tissue at rest; empty for a specimen given as a mesh.
 /// @throws CaseError as project_tumor_edge, project_line, plan_ring and plan_line.
 [[nodiscard]] ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,
                                const MadeSkin& made_skin = {});
-/// The tumour's surface in the stretched tissue: placed as its edge is (each vertex is moved along the approach by what the edge's points
-/// near it are moved when they are laid onto the skin) and, where it was drawn on the tissue as scanned, carried along with that.
-/// @param drawn_edge  as given, in the surface's configuration; absent: the surface is taken as it lies.
-/// @throws CaseError (field tumor.surface) for a vertex farther than surface_tolerance_mm from the tissue.
+/// Places the tumour's surface in the stretched tissue. Like its edge, it is moved along the approach onto the skin:
+/// each vertex by the weighted moves of the edge's points near it. If it was drawn on the tissue as scanned, it then
+/// follows the tissue's deformation.
+/// @param drawn_edge  as given, in the surface's configuration; absent: the surface is not moved onto the skin.
+/// @throws CaseError (field tumor.contour) for an edge point beside the tissue, (tumor.surface) for a vertex farther
+/// than surface_tolerance_mm from it.
 [[nodiscard]] TriMesh tumor_in_stretched(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                                          TriMesh surface, const std::optional<Contour>& drawn_edge);
-/// How a case's cut along a path is simulated; the tumour's surface is not in it.
+/// Returns the settings of a simulated cut along a path, without the tumour's surface.
 [[nodiscard]] IncisionSettings incision_settings(const Case& settings, const ToolPath& path);
-/// The same with layers down to the path's deepest place. @param tumor_surface  closed, stretched
-/// tissue before the cut, mm; without triangles: not known.
+/// Returns the same settings with the tumour's surface, and with layers down to the path's deepest place.
+/// @param tumor_surface  closed, stretched tissue before the cut, mm; without triangles: not known.
 [[nodiscard]] IncisionSettings incision_settings_for(const Case& settings, const ToolPath& path,
                                                      const TriMesh& tumor_surface);
-/// A cut along a path from its beginning, the tumour's surface not known, and its evaluation.
+/// Simulates a cut along a path from its beginning, without the tumour's surface, and evaluates it.
 [[nodiscard]] SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const TissueState& stretched,
                                          const ToolPath& path, const ToolPath& intended, Workers& workers,
                                          Monitor& monitor);
