@@ -21,6 +21,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -174,7 +175,7 @@ class Experiment {
   [[nodiscard]] static double cost_of(RivalPath path) { return is_without_simulation(path) ? 0.5 : 0.9; }
   [[nodiscard]] double calibration_cost() const;
   void report_end(const Trial* trial, double cost);
-  void report_part(double cost, double& told);
+  void report_part(const SpecimenTrial& specimen, double cost, double& told);
   void tell();
   void run_trials(TrialRole first, TrialRole last);
   /// @returns the part of its cost that was reported on the way.
@@ -219,6 +220,7 @@ class Experiment {
   std::mutex mutex_;  // of what is not told yet, while specimens go side by side
   std::vector<std::string> warnings_;
   double done_ = 0.0;                                          // of the whole cost
+  std::atomic<bool> has_computed_ = false;                     // else all so far was kept by an earlier run
   const std::thread::id caller_ = std::this_thread::get_id();  // it alone may tell the monitor
 };
 
@@ -373,7 +375,8 @@ void Experiment::report_end(const Trial* trial, double cost) {
   if (std::this_thread::get_id() == caller_) tell();
 }
 
-void Experiment::report_part(double cost, double& told) {
+void Experiment::report_part(const SpecimenTrial& specimen, double cost, double& told) {
+  if (specimen.has_computed()) has_computed_ = true;
   told += cost;
   report_end(nullptr, cost);
 }
@@ -384,7 +387,8 @@ void Experiment::tell() {
   warnings_.clear();
   double total = calibration_cost();
   for (const Trial& trial : trials_) total += cost_of(trial);
-  monitor_.progress("virtual specimens", std::min(1.0, done_ / total));
+  // Steps that an earlier run kept take no time: whoever estimates the time left from them would promise too much.
+  if (has_computed_ || done_ >= total) monitor_.progress("virtual specimens", std::min(1.0, done_ / total));
 }
 
 /// Roughly how long a specimen takes, in times of one that is cut as planned and no more: measured on a machine with
@@ -417,13 +421,13 @@ double Experiment::run_trial(Trial& trial) {
       bench);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
-    if (trial.role != TrialRole::Calibrate) report_part(1.0, told);
+    if (trial.role != TrialRole::Calibrate) report_part(specimen, 1.0, told);
     const bool goes_on = trial.planned.is_made && trial.role != TrialRole::Calibrate;
     const bool is_test = goes_on && trial.role == TrialRole::Test;
     if (goes_on) {
       assess(specimen, trial);
       correct(specimen, trial);
-      report_part(kCorrectionCost, told);
+      report_part(specimen, kCorrectionCost, told);
     }
     if (goes_on && settings_.with_withheld_force) assess_without_pull(specimen, trial);
     if (is_test) cut_rivals(specimen, trial, told);
@@ -435,6 +439,7 @@ double Experiment::run_trial(Trial& trial) {
   trial.registration_rmse_mm = specimen.registration_rmse_mm();
   trial.ended_at = specimen.ended_at();
   trial.commands = steps.lines();
+  if (steps.has_computed()) has_computed_ = true;
   return told;
 }
 
@@ -543,7 +548,7 @@ void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial, double& told)
     trial.unlike = forecast.result.at("with_simulation").at("unlike").get<std::vector<std::string>>();
   for (const RivalPath path : rivals_) {
     trial.rivals.push_back({path, cut_along(path, specimen, forecast)});
-    report_part(cost_of(path), told);
+    report_part(specimen, cost_of(path), told);
   }
 }
 
@@ -579,7 +584,7 @@ void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial, double& tol
           name + ".yaml", forecast_variant(path, learning.tool, specimen.youngs_modulus_kpa(), forecast.result));
       made.cut = specimen.cut_again(variant, specimen.at(name), name, !is_without_simulation(path)).cut;
     }
-    report_part(kLearningCost, told);
+    report_part(specimen, kLearningCost, told);
   }
 }
 
@@ -652,6 +657,7 @@ void Experiment::calibrate() {
   calibrated_kpa_ = mean_modulus_kpa(calibration_);
   if (!settings_.is_quick) table_1_ = of_all("table_1", CalibrationMethod::Paper, "table_1", "table_1.csv");
   calibration_commands_ = steps.lines();
+  if (steps.has_computed()) has_computed_ = true;
   report_end(nullptr, calibration_cost());
 }
 

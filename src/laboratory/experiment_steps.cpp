@@ -160,6 +160,7 @@ StepAnswer ExperimentSteps::run(const ExperimentStep& step) {
   cache_.remove(step.name);
   const StepAnswer answer = made_now(step, log);
   if (answer.end == StepEnd::Unusable) return answer;
+  has_computed_ = true;
   const KeptAnswer kept{answer.end == StepEnd::Done, answer.result.dump(), products_of(step)};
   cache_.keep(step.name, key, kept);
   return {answer.end, Json::parse(kept.result)};

@@ -37,6 +37,8 @@ class ExperimentSteps {
   /// The commands so far, in their order, as a shell would be given them.
   [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+  /// Whether the cache had no answer for at least one step so far.
+  [[nodiscard]] bool has_computed() const { return has_computed_; }
 
  private:
   class LogFile;
@@ -47,6 +49,7 @@ class ExperimentSteps {
   const Monitor& outer_;
   Cache cache_;
   std::vector<std::string> lines_;
+  bool has_computed_ = false;
 };
 
 }  // namespace incise::laboratory
