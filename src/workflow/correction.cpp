@@ -57,11 +57,11 @@ std::optional<PathErrors> layer_path_errors(const Case& settings, const Simulate
 
 /// Depth, mm, that the kerf lacks of the least depth accepted without a caution, averaged over the path.
 double mean_shortfall_mm(const Case& settings, const SimulatedCut& cut) {
-  const std::vector<double> shares = depth_shares(settings, cut.incision.kerf.depth);
+  const std::vector<DepthShare> shares = depth_shares(settings, cut.incision.kerf.depth);
   if (shares.empty()) return 0.0;
   const double limit = *verdict_rule("depth").limit;
   double missing = 0.0;
-  for (const double share : shares) missing += std::max(0.0, limit - share);
+  for (const DepthShare& one : shares) missing += std::max(0.0, limit - one.share);
   return settings.plan.depth_mm * missing / static_cast<double>(shares.size());
 }
 
@@ -88,8 +88,8 @@ std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& f
         "({} mm deep), the cut before {}",
         open.size(), fmt::join(open, ", "), before.size());
   const auto least = [&settings](const SimulatedCut& cut) {
-    const std::vector<double> shares = depth_shares(settings, cut.incision.kerf.depth);
-    return shares.empty() ? 0.0 : *std::min_element(shares.begin(), shares.end());
+    const std::vector<DepthShare> shares = depth_shares(settings, cut.incision.kerf.depth);
+    return shares.empty() ? 0.0 : std::ranges::min(shares, {}, &DepthShare::share).share;
   };
   if (least(corrected) >= std::min(*verdict_rule("depth").limit, least(first))) return {};
   return fmt::format("it is {:.0f} % of the planned depth deep at its shallowest, the cut before {:.0f} %",

@@ -46,22 +46,21 @@ std::string share_in_words(double share) {
 
 void judge_depth(const Case& settings, const SimulatedCut& cut, Verdict& verdict) {
   const DepthReached& depth = cut.incision.kerf.depth;
-  const std::vector<double> shares = depth_shares(settings, depth);
+  const std::vector<DepthShare> shares = depth_shares(settings, depth);
   if (shares.empty()) return;
   const double limit = *verdict_rule("depth").limit;
-  const auto least = static_cast<std::size_t>(std::min_element(shares.begin(), shares.end()) - shares.begin());
-  if (shares[least] >= limit) return;
-  const auto shallow = std::count_if(shares.begin(), shares.end(), [limit](double share) { return share < limit; });
-  const double reached_mm = depth.profile.depth_mm[least];
+  const DepthShare& least = *std::ranges::min_element(shares, {}, &DepthShare::share);
+  if (least.share >= limit) return;
+  const auto shallow = std::ranges::count_if(shares, [limit](const DepthShare& one) { return one.share < limit; });
   verdict.add(
-      "depth", shares[least],
+      "depth", least.share,
       fmt::format("the simulated kerf is {:.2g} mm deep at its shallowest, {:.0f} % of the planned {:.2g} mm, and too "
                   "shallow on "
                   "{} of the path",
-                  reached_mm, 100.0 * shares[least], std::max(depth.planned_at_mm[least], settings.plan.depth_mm),
+                  depth.profile.depth_mm[least.at], 100.0 * least.share, least.planned_mm,
                   share_in_words(static_cast<double>(shallow) / static_cast<double>(shares.size()))),
-      VerdictPlace{depth.profile.arclength_mm[least], depth.profile.course.points[least],
-                   fmt::format("{:.0f} mm along the path", depth.profile.arclength_mm[least])});
+      VerdictPlace{depth.profile.arclength_mm[least.at], depth.profile.course.points[least.at],
+                   fmt::format("{:.0f} mm along the path", depth.profile.arclength_mm[least.at])});
 }
 
 /// The least tissue beside the tumour's edge in one line of the cut.
@@ -265,13 +264,13 @@ std::optional<double> nearest_to_tumor_mm(const Case& settings, const SimulatedC
   return std::isfinite(nearest_mm) ? std::optional(nearest_mm) : std::nullopt;
 }
 
-std::vector<double> depth_shares(const Case& settings, const DepthReached& depth) {
-  std::vector<double> shares;
+std::vector<DepthShare> depth_shares(const Case& settings, const DepthReached& depth) {
+  std::vector<DepthShare> shares;
   // A tool along the surface's normal goes less deep along the approach: then only the path's own depth counts.
   const double asked_mm = settings.plan.axis_mode == AxisMode::Approach ? settings.plan.depth_mm : 0.0;
   for (std::size_t i = 0; i < depth.profile.depth_mm.size(); ++i) {
     const double planned = std::max(depth.planned_at_mm.at(i), asked_mm);
-    if (planned > 0.0) shares.push_back(depth.profile.depth_mm[i] / planned);
+    if (planned > 0.0) shares.push_back({i, planned, depth.profile.depth_mm[i] / planned});
   }
   return shares;
 }

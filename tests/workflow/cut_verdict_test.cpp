@@ -129,6 +129,20 @@ TEST(VerdictOfCut, HoldsAShallowPathAgainstTheDepthThatTheCasePlans) {
   EXPECT_EQ(verdict_of_cut(shallow, cut).status(), VerdictStatus::Ok);
 }
 
+TEST(VerdictOfCut, NamesDepthAndPlaceAlsoWhereThePathBeginsWithoutAny) {
+  SimulatedCut cut = sound_cut();
+  DepthReached& depth = cut.incision.kerf.depth;
+  for (const std::size_t i : {0, 1, 2}) depth.planned_at_mm[i] = 0.0;
+  depth.planned_at_mm[41] = 4.0;
+  depth.profile.depth_mm[41] = 1.0;
+  Case along_normals;
+  along_normals.plan.axis_mode = AxisMode::SurfaceNormal;
+  const Verdict verdict = verdict_of_cut(along_normals, cut);
+  ASSERT_THAT(ids_of(verdict), ElementsAre("depth"));
+  EXPECT_NEAR(*verdict.reasons()[0].at->arclength_mm, 0.785 * 41, 1e-9);
+  EXPECT_THAT(verdict.reasons()[0].message, HasSubstr("1 mm deep at its shallowest, 25 % of the planned 4 mm"));
+}
+
 TEST(VerdictOfCut, RefusesTooLittleTissueBesideTheEdgeInTheMidLineTheInnerEdgeOrALayer) {
   SimulatedCut cut = sound_cut();
   cut.inner_edge.errors = contour_errors(circle(12.15), circle(10.0), 4.5, -Vec3::UnitZ());

@@ -24,10 +24,17 @@ namespace incise {
 /// margin. nullopt: nothing was measured.
 [[nodiscard]] std::optional<double> nearest_to_tumor_mm(const Case& settings, const SimulatedCut& cut);
 
-/// Returns the share of the planned depth that the kerf reaches, >= 0, at each place of its depth profile where a depth
-/// is planned. The planned depth is the tip's depth on the path. With tool_axis approach it is at least the case's
-/// plan.depth_mm: a path that is too shallow does not excuse a shallow kerf.
-[[nodiscard]] std::vector<double> depth_shares(const Case& settings, const DepthReached& depth);
+/// How much of the planned depth a kerf reaches at one place of its depth profile.
+struct DepthShare {
+  std::size_t at = 0;       ///< place in the profile
+  double planned_mm = 0.0;  ///< planned depth there, > 0
+  double share = 0.0;       ///< reached depth over planned depth, >= 0
+};
+
+/// Returns the share of the planned depth that the kerf reaches at each place of its depth profile where a depth is
+/// planned, in the profile's order. The planned depth is the tip's depth on the path. With tool_axis approach it is at
+/// least the case's plan.depth_mm: a path that is too shallow does not excuse a shallow kerf.
+[[nodiscard]] std::vector<DepthShare> depth_shares(const Case& settings, const DepthReached& depth);
 
 /// Returns the depths, mm, of the layers within the plan that a cut left open, in the order of the layers.
 [[nodiscard]] std::vector<double> open_layers_mm(const IncisionResult& incision);

@@ -1,7 +1,0 @@
-#include <incise/workflow/study.hpp>
-
-#include <fmt/format.h>
-
-namespace incise {
-
-}  // namespace incise
