@@ -17,10 +17,10 @@ void describe(Visitor& v, CaseFile& file) {
   if (v.sets()) c.is_virtual = origin == 1;
 
   v.begin({"ct", "The scan of the specimen and which part of it is tissue."});
-  v("volume", in.ct_volume, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha or a folder of PNG slices.");
+  v("volume", in.ct_volume, "DICOM folder, .nrrd/.nhdr, .nii[.gz], .mhd/.mha or a folder of PNG slices.");
   v("labels", in.ct_labels,
-    "A label volume (.nrrd, .nii[.gz], .mhd/.mha) in place of thresholds: every label but 0 is tissue. With it the "
-    "volume is used for pictures only, and may be left out; absent: window_hu finds the tissue.");
+    "A label volume (.nrrd/.nhdr, .nii[.gz], .mhd/.mha) in place of thresholds: every label but 0 is tissue. With it "
+    "the volume is used for pictures only, and may be left out; absent: window_hu finds the tissue.");
   describe(v, c.segmentation);
   describe(v, file.ct_reading);
   v.end();
@@ -32,8 +32,8 @@ void describe(Visitor& v, CaseFile& file) {
   describe(v, c.material);
   describe(v, c.variation);
   v("elasticity_map", in.elasticity_map,
-    "Young's modulus in kPa, voxel by voxel, as 32-bit floats (.nrrd, .nii[.gz], .mhd/.mha) in the frame of the scan; "
-    "where it is not above 0, youngs_modulus_kpa holds. Absent: it holds everywhere.");
+    "Young's modulus in kPa, voxel by voxel, as 32-bit floats (.nrrd/.nhdr, .nii[.gz], .mhd/.mha) in the frame of the "
+    "scan; where it is not above 0, youngs_modulus_kpa holds. Absent: it holds everywhere.");
   v.end();
   v({"constraints",
      "List of fixed, displaced, support and traction; absent: posterior 15 mm clamped, anterior 10 mm pulled 20 mm "

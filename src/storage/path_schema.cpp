@@ -47,7 +47,7 @@ Json fields() {
   json["tumor_edge_closed"] = {{"type", "boolean"}, {"default", true}};
   Json row = array_of({{"type", "number"}}, 4, "");
   row["maxItems"] = 4;
-  json["T_robot_sim"] = array_of(row, 4, "Rows of the rigid motion from the simulation's frame to the robot's, mm");
+  json["T_robot_sim"] = array_of(row, 4, "Rows of the similarity from the simulation's frame to the robot's, mm");
   json["T_robot_sim"]["maxItems"] = 4;
   json["specimen_id"] = {{"type", "string"},
                          {"pattern", "^[A-Za-z0-9._][A-Za-z0-9._-]{0,63}$"},
@@ -55,6 +55,11 @@ Json fields() {
   json["specimen_is"] = choice(std::array<std::string_view, 2>{"real", "virtual"},
                                "Virtual: a synthetic body, stated in every program made from the path");
   json["source_sha256"] = {{"type", "string"}, {"pattern", "^[0-9a-f]{64}$"}, {"description", "SHA-256 of what the path was made from"}};
+  json["verdict"] = {{"type", "object"},
+                     {"required", {"status", "reasons", "digest_sha256"}},
+                     {"description",
+                      "Verdict on the simulated cut along the path; the digest seals both. Written by incise: a path "
+                      "without it, or changed after it, counts as not simulated"}};
   return json;
 }
 

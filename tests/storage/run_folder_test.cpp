@@ -15,6 +15,7 @@
 #include <incise/storage/run_folder.hpp>
 #include <incise/workflow/study.hpp>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -530,7 +531,8 @@ TEST_F(RunFolderTest, TheSchemaOfAPathNamesEveryFieldThatIsWritten) {
   path.source_sha256 = sha256_of_text("");
   path.specimen_id = "tongue-07";
   path.is_virtual = true;
-  const auto written = nlohmann::json::parse(path_json(path));
+  write_tool_path(folder_ / "path.json", path, Verdict{});
+  const auto written = nlohmann::json::parse(read_text(folder_ / "path.json"));
   const auto keys_of = [](const nlohmann::json& object) {
     std::vector<std::string> keys;
     for (const auto& [key, value] : object.items()) keys.push_back(key);
@@ -539,6 +541,9 @@ TEST_F(RunFolderTest, TheSchemaOfAPathNamesEveryFieldThatIsWritten) {
   EXPECT_EQ(keys_of(written), keys_of(schema["properties"]));
   EXPECT_EQ(keys_of(written["waypoints"][0]), keys_of(schema["properties"]["waypoints"]["items"]["properties"]));
   EXPECT_EQ(written["schema"], schema["properties"]["schema"]["const"]);
+  const std::vector<std::string> of_verdict = keys_of(written["verdict"]);
+  EXPECT_THAT(schema["properties"]["verdict"]["required"].get<std::vector<std::string>>(),
+              ::testing::UnorderedElementsAreArray(of_verdict));
   for (const char* key : {"frame", "kind"}) {
     const auto& names = schema["properties"][key]["enum"];
     EXPECT_NE(std::find(names.begin(), names.end(), written[key]), names.end());
