@@ -33,7 +33,8 @@ int run(const steps::MeshRequest& arguments, const CommonOptions& options) {
 void add_mesh(Application& application) {
   auto [verb, a] = application.add_verb<steps::MeshRequest>(
       "mesh", "", "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu", run);
-  verb->add_option("input", a.input, "Labels (.nrrd, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
+  verb->add_option("input", a.input,
+                   "Labels (.nrrd/.nhdr, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
       ->required();
   verb->add_option("--around", a.around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
   verb->add_option("--fine-mm", a.fine_mm,

@@ -40,7 +40,7 @@ void add_segment(Application& application) {
         if (!arguments.seed.empty()) settings.seeds_mm.emplace_back(arguments.seed.data());
         return run_step(options, [&](const auto& context) { return steps::segment_scan(request, context); });
       });
-  verb->add_option("ct", a.ct, "DICOM folder, .nrrd, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
+  verb->add_option("ct", a.ct, "DICOM folder, .nrrd/.nhdr, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
   verb->add_option("--window-hu", a.window, "Least and greatest HU of tissue")->expected(2);
   verb->add_option("--roi-box-mm", a.roi, "Low x y z and high x y z of the box to look in, LPS")->expected(6);
   verb->add_option("--seed-mm", a.seed, "A point inside the specimen, LPS")->expected(3);

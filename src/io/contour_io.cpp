@@ -34,7 +34,8 @@ Contour read_csv(const std::filesystem::path& path, bool is_closed) {
                   found_closed ? "an open curve" : "a closed curve");
 }
 
-Contour read_polyline(const std::filesystem::path& path, bool is_closed) {
+/// @param says_closed  becomes true where the last index repeats the first.
+Contour read_polyline(const std::filesystem::path& path, bool is_closed, bool& says_closed) {
   const io_detail::VtkXmlFile file(path, "PolyData");
   const Points points = file.points();
   if (file.count("NumberOfLines") != 1) {
@@ -44,6 +45,7 @@ Contour read_polyline(const std::filesystem::path& path, bool is_closed) {
   const bool repeats_first = indices.size() > 2 && indices.front() == indices.back();
   if (repeats_first && !is_closed) refuse_kind(path, "<Lines>", true);
   if (repeats_first) indices.pop_back();
+  says_closed = repeats_first;
   Contour contour{{}, is_closed};
   for (const double index : indices) {
     if (!(index >= 0.0 && index < static_cast<double>(points.size()))) {
@@ -141,18 +143,19 @@ bool ends_with(const std::string& text, std::string_view ending) {
 Contour read_contour(const std::filesystem::path& path, bool is_closed) {
   const std::string name = io_detail::lower_case(path.filename().string());
   Contour contour;
+  bool says_closed = ends_with(name, ".mrk.json");
   if (ends_with(name, ".csv"))
     contour = read_csv(path, is_closed);
   else if (ends_with(name, ".vtp"))
-    contour = read_polyline(path, is_closed);
+    contour = read_polyline(path, is_closed, says_closed);
   else if (ends_with(name, ".mrk.json"))
     contour = read_slicer_markup(path, is_closed);
   else
     throw DataError(path, "", fmt::format("the ending '{}'", path.extension().string()), ".csv, .vtp or .mrk.json");
   Points& points = contour.points;
-  const bool is_said_closed = ends_with(name, ".mrk.json") || (points.size() > 1 && points.front() == points.back());
-  if (!is_said_closed) require_closing(contour, path);
-  if (is_closed && points.size() > 1 && points.front() == points.back()) points.pop_back();
+  const bool repeats_first = points.size() > 1 && points.front() == points.back();
+  if (!says_closed && !repeats_first) require_closing(contour, path);
+  if (is_closed && repeats_first) points.pop_back();
   const std::size_t least = is_closed ? 3 : 2;
   if (points.size() < least) {
     throw DataError(path, "", fmt::format("{} points", points.size()),

@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // decoders count bytes in 31 bits
+constexpr int kGreyTolerance = 8;                         // most by which the channels of grey differ
 
 StoredPixels stored(std::string_view bytes, const fs::path& name) {
   if (bytes.size() > kMostBytes) {
@@ -65,7 +66,6 @@ std::vector<std::uint8_t> rgb_on_white(const StoredPixels& from) {
 
 /// Whether some pixel differs from grey by more than noise.
 bool has_color(const std::vector<std::uint8_t>& rgb) {
-  constexpr int kGreyTolerance = 8;
   for (std::size_t i = 0; i < rgb.size(); i += 3) {
     const auto [low, high] = std::minmax({rgb[i], rgb[i + 1], rgb[i + 2]});
     if (high - low > kGreyTolerance) return true;
@@ -138,7 +138,9 @@ ColorPicture decode_picture(std::string_view bytes, const fs::path& name) {
   }
   ColorPicture picture{pixels.width, pixels.height, rgb_on_white(pixels)};
   if (!has_color(picture.rgb)) {
-    throw DataError(name, "", "a picture without colour (red, green and blue are equal everywhere)",
+    throw DataError(name, "",
+                    fmt::format("a picture without colour (red, green and blue differ by at most {} at every pixel)",
+                                kGreyTolerance),
                     "a colour picture");
   }
   return picture;

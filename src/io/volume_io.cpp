@@ -169,7 +169,7 @@ ReadVolume read_ct(const fs::path& path, const CtReadSettings& settings, Monitor
 LabelVolume read_labels(const fs::path& path) {
   require_exists(path);
   if (fs::is_directory(path))
-    throw DataError(path, "", "a folder", "a file of labels: .nrrd, .nii, .nii.gz, .mhd or .mha");
+    throw DataError(path, "", "a folder", "a file of labels: .nrrd, .nhdr, .nii, .nii.gz, .mhd or .mha");
   const RawImage image = read_itk_image(path, format_of_file(path));
   LabelVolume labels;
   require_compact_voxels(path, image.grid.spacing_mm);

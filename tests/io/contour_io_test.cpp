@@ -101,6 +101,16 @@ TEST_F(ContourFile, VtpReadsBackTheSameDoublesAndKnowsWhetherItIsClosed) {
   EXPECT_FALSE(read_contour(folder_ / "b.vtp", false).is_closed);
 }
 
+TEST_F(ContourFile, VtpThatRepeatsItsFirstIndexMayHaveALongLastSide) {
+  const Contour chord{{Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0.5, 0), Vec3(3, 0.5, 0), Vec3(4, 0, 0), Vec3(5, 0, 0)},
+                      true};  // neighbours are at most 1.12 mm apart, the ends 5 mm
+  write_contour_vtp(folder_ / "closed.vtp", chord);
+  EXPECT_EQ(read_contour(folder_ / "closed.vtp").points, chord.points);
+  write_contour_vtp(folder_ / "open.vtp", {chord.points, false});
+  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_contour(folder_ / "open.vtp")); }),
+              HasSubstr("ends 5 mm apart"));
+}
+
 TEST_F(ContourFile, VtpHasToHoldOnePolyline) {
   const std::vector<Contour> two{kTriangle, kTriangle};
   write_vtp(folder_ / "a.vtp", two);

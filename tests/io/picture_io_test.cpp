@@ -257,6 +257,8 @@ TEST(DecodePicture, RefusesPicturesWithoutColor) {
   ColorPicture grey = small_picture();
   for (std::size_t i = 0; i < grey.rgb.size(); ++i) grey.rgb[i] = grey.rgb[i - i % 3];
   EXPECT_THAT(refusal(encode_png(grey)), HasSubstr("without colour"));
+  grey.rgb[0] = static_cast<std::uint8_t>(grey.rgb[1] < 128 ? grey.rgb[1] + 8 : grey.rgb[1] - 8);
+  EXPECT_THAT(refusal(encode_png(grey)), HasSubstr("differ by at most 8 at every pixel"));
   const DepthPicture one_channel{2, 2, {1, 2, 3, 4}};
   EXPECT_THAT(refusal(encode_png(one_channel)), HasSubstr("greyscale"));
 }

@@ -46,12 +46,18 @@ class EveryFormat : public ::testing::TestWithParam<FormatCase> {
  protected:
   TemporaryFolder folder;
   fs::path file = folder / GetParam().name;
+
+  /// The file that holds the voxels: beside the header, or the file itself.
+  fs::path voxel_file() const {
+    if (file.extension() == ".mhd") return folder / "ct.zraw";
+    return file.extension() == ".nhdr" ? folder / "ct.raw.gz" : file;
+  }
 };
 
 INSTANTIATE_TEST_SUITE_P(Volumes, EveryFormat,
-                         ::testing::Values(FormatCase{"ct.nrrd", 1e-11}, FormatCase{"ct.mha", 1e-11},
-                                           FormatCase{"ct.mhd", 1e-11}, FormatCase{"ct.nii", 1e-4},
-                                           FormatCase{"ct.nii.gz", 1e-4}),
+                         ::testing::Values(FormatCase{"ct.nrrd", 1e-11}, FormatCase{"ct.nhdr", 1e-11},
+                                           FormatCase{"ct.mha", 1e-11}, FormatCase{"ct.mhd", 1e-11},
+                                           FormatCase{"ct.nii", 1e-4}, FormatCase{"ct.nii.gz", 1e-4}),
                          [](const auto& test) {
                            std::string name = test.param.name;
                            std::replace(name.begin(), name.end(), '.', '_');
@@ -95,19 +101,18 @@ TEST_P(EveryFormat, ReplacesAnOlderFileAndLeavesNothingElse) {
   ct.voxels[0] = 77;
   write_ct(file, ct);
   EXPECT_EQ(read_quietly(file).volume.voxels[0], 77);
-  const bool has_voxel_file = file.extension() == ".mhd";
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), has_voxel_file ? 2 : 1);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), voxel_file() == file ? 1 : 2);
 }
 
 TEST_P(EveryFormat, RefusesEveryFileThatIsCutShort) {
   write_ct(file, oblique_ct());
-  const fs::path voxels = file.extension() == ".mhd" ? folder / "ct.zraw" : file;
+  const fs::path voxels = voxel_file();
+  const fs::path named = file.extension() == ".nhdr" ? file : voxels;  // the reader of NRRD knows only the header
   const std::string whole = read_bytes(voxels);
   for (const double part : {0.0, 0.02, 0.2, 0.5, 0.8, 0.97}) {
     const auto length = static_cast<std::size_t>(part * static_cast<double>(whole.size()));
     write_bytes(voxels, whole.substr(0, length));
-    EXPECT_THAT(failure_of(file), HasSubstr(voxels.filename().string()))
-        << length << " of " << whole.size() << " bytes";
+    EXPECT_THAT(failure_of(file), HasSubstr(named.filename().string())) << length << " of " << whole.size() << " bytes";
   }
 }
 
@@ -166,6 +171,14 @@ TEST_P(EveryFormat, LeavesTheOlderFileWhenTheDiskFillsUp) {
   EXPECT_THAT(message, HasSubstr(file.filename().string()));
   EXPECT_TRUE(read_bytes(file) == before);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), files_before);
+}
+
+TEST_P(EveryFormat, RemovesWhatAKilledProcessLeft) {
+  const fs::path left = folder / (".." + file.filename().string() + ".4194305.0.part");  // above every process id
+  fs::create_directory(left);
+  write_ct(file, oblique_ct());
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_FALSE(fs::exists(left));
 }
 
 TEST_P(EveryFormat, LeavesNothingWhereTheFolderIsMissingOrReadOnly) {
@@ -316,7 +329,10 @@ TEST(ReadCt, RefusesWhatIsNoVolume) {
   write_bytes(folder / "notes.txt", "hello");
   EXPECT_THAT(failure_of(folder / "notes.txt"), AllOf(HasSubstr("'.txt'"), HasSubstr(".nrrd")));
   EXPECT_THAT(failure_of(folder.path()), HasSubstr("without DICOM files or PNG pictures"));
-  EXPECT_THAT(message_of<DataError>([&] { (void)read_labels(folder.path()); }), HasSubstr("a folder"));
+  EXPECT_THAT(message_of<DataError>([&] { (void)read_labels(folder.path()); }),
+              AllOf(HasSubstr("a folder"), HasSubstr(".nrrd, .nhdr, .nii")));
+  EXPECT_THAT(message_of<DataError>([&] { write_ct(folder / "ct.txt", oblique_ct()); }),
+              AllOf(HasSubstr("'.txt'"), HasSubstr(".nrrd, .nhdr, .nii")));
 }
 
 TEST(ReadCt, StopsOnRequest) {

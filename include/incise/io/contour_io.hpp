@@ -23,8 +23,8 @@ namespace incise {
 /// If the last point of a closed contour repeats the first, it is dropped.
 /// @param is_closed  the kind that the caller needs. A file that records the other kind is refused.
 /// @throws DataError naming line and column, or the place in the JSON: missing column, bad or non-finite value, fewer
-///         than 3 points (2 if open), more than one curve; a `.csv` or `.vtp` to be read as closed whose ends are more
-///         than 4 times as far apart as any two neighbouring points.
+///         than 3 points (2 if open), more than one curve; a `.csv` or `.vtp` to be read as closed that does not repeat
+///         its first point and whose ends are more than 4 times as far apart as any two neighbouring points.
 [[nodiscard]] Contour read_contour(const std::filesystem::path& path, bool is_closed = true);
 
 /// Writes the columns x_mm,y_mm,z_mm and then `columns` (names with their unit, such as `signed_error_mm`), LF line

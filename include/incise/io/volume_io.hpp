@@ -112,8 +112,9 @@ struct ReadVolume {
 /// @throws DataError as read_ct, or naming the first voxel that holds no such integer.
 [[nodiscard]] LabelVolume read_labels(const std::filesystem::path& path);
 
-/// Writes .nrrd, .nii, .nii.gz, .mhd (with its .zraw beside it) or .mha, all or nothing. Voxels are kept exactly;
-/// geometry in double precision, except in NIfTI, whose single precision keeps about 1e-5 mm.
+/// Writes .nrrd, .nhdr (with its .raw.gz beside it), .nii, .nii.gz, .mhd (with its .zraw beside it) or .mha, all or
+/// nothing. Voxels are kept exactly; geometry in double precision, except in NIfTI, whose single precision keeps about
+/// 1e-5 mm.
 /// @throws DataError if the extension is not a format of read_labels, or if the file cannot be written.
 /// @throws InvalidArgument if the volume is empty or its grid is not finite, positive and orthonormal.
 void write_ct(const std::filesystem::path& path, const CtVolume& volume);
