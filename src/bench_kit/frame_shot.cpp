@@ -2,7 +2,10 @@
 #include "bench_kit/tissue_colors.hpp"
 
 #include <incise/bench_kit/pictures.hpp>
+#include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,6 +109,9 @@ std::vector<std::uint8_t> holes(const Pinhole& camera, const View& view, double 
 }  // namespace
 
 FrameShot shoot_frame(const SeenTissue& tissue, const FrameNoise& asked, const Mat4& T_camera_specimen) {
+  INCISE_REQUIRE(asked.hole_percent >= 0.0 && asked.hole_percent <= 100.0,
+                 fmt::format("expected hole_percent of 0 to 100, found {}", asked.hole_percent));
+  INCISE_REQUIRE(!tissue.tumor_edge.points.empty(), "expected a tumour edge with points, found none");
   FrameShot shot;
   const Pinhole& camera = shot.camera;
   const Mat3 R = T_camera_specimen.topLeftCorner<3, 3>();

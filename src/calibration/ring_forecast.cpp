@@ -316,6 +316,13 @@ struct RingForecaster::Posterior {
     sectors_covariance.diagonal().array() += fast_mm * fast_mm;
     return sectors_covariance;
   }
+  /// Returns the number of sectors of lists: that of the observations, if there are any.
+  [[nodiscard]] std::size_t sectors_of_lists(std::size_t asked) const {
+    if (!places.empty()) return sectors;
+    INCISE_REQUIRE(asked >= kEntriesThatCount,
+                   fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, asked));
+    return asked;
+  }
   /// Returns the names of the covariates outside the observations' range; empty without observations.
   [[nodiscard]] std::vector<std::string_view> unlike(const RingCovariates& ring) const {
     if (observations.empty()) return {};
@@ -392,7 +399,7 @@ bool RingForecaster::is_converged() const {
 RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t sectors) const {
   const Posterior& p = *posterior_;
   RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0, .share_sd = p.spreads.share};
-  const std::size_t count = p.places.empty() ? sectors : p.sectors;
+  const std::size_t count = p.sectors_of_lists(sectors);
   // The ring is taken as an average simulated one: the share covers its difference.
   const Posterior::Expected expected = p.expect(p.place_of(ring), count);
   if (!p.places.empty()) {
@@ -413,7 +420,7 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
 RingPrediction RingForecaster::predict(const RingCovariates& ring, const std::vector<double>& simulated_mm,
                                        double ln_modulus_sd, std::size_t sectors) const {
   const Posterior& p = *posterior_;
-  const std::size_t count = p.places.empty() ? sectors : p.sectors;
+  const std::size_t count = p.sectors_of_lists(sectors);
   INCISE_REQUIRE(simulated_mm.empty() || simulated_mm.size() >= kEntriesThatCount,
                  fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, simulated_mm.size()));
   for (const double value : simulated_mm) INCISE_REQUIRE(std::isfinite(value), "expected finite errors");

@@ -104,7 +104,7 @@ void ByteReader::number(const Field& field, double& value, const Range& range) {
 
 void ByteReader::integer(const Field& field, std::int64_t& value, const Range& range) {
   value = number_in<std::int64_t>(take(field, sizeof value));
-  if (!contains(range, static_cast<double>(value))) refuse(field, fmt::format("{}", value), describe(range));
+  if (!contains(range, as_number(value, range))) refuse(field, fmt::format("{}", value), describe(range));
 }
 
 void ByteReader::flag(const Field& field, bool& value) {

@@ -8,10 +8,7 @@
 namespace incise {
 namespace {
 
-constexpr double kMaxContactS = 600.0;      // until tissue is cut: beyond it no cut ends in a reasonable time
-constexpr double kLeastAdvanceMm = 1e-4;    // per step: below it a cut takes a million steps
-constexpr double kLeastResidualTolerance = 1e-6;  // a hundredth of the tolerance of a converged cut
-constexpr double kMostResidualTolerance = 0.3;    // beyond it a step leaves more than the next corrects: another cut
+constexpr double kMaxContactS = 600.0;  // until tissue is cut: beyond it no cut ends in a reasonable time
 
 }  // namespace
 

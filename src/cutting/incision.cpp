@@ -55,8 +55,8 @@ class FrameKeeper {
     const double due = duration_s_ * static_cast<double>(kept_.size()) / std::max(1, frames_ - 1);
     if (static_cast<int>(kept_.size()) < frames_ - 1 && state.time_s >= due - kTimeRoundingS) keep(state, is_tool_in);
   }
-  void keep_last(const CutState& state) {
-    if (frames_ > 0) keep(state, false);
+  void keep_last(const CutState& state, bool is_tool_in) {
+    if (frames_ > 0) keep(state, is_tool_in);
   }
 
  private:
@@ -140,7 +140,8 @@ class IncisionRun {
     return Outcome::Success;
   }
 
-  void keep_last_frame() { frames_.keep_last(state()); }
+  /// The tool is still in if the cut was cancelled or broke off before the first step without it.
+  void keep_last_frame() { frames_.keep_last(state(), progress_.relaxation_steps == 0); }
   [[nodiscard]] bool is_at_rest() const { return is_at_rest_; }
 
  private:
@@ -293,6 +294,7 @@ IncisionResult continue_incision(const TissueModel& model, const TissueState& st
                                  Monitor& monitor, const ProgressKeeper& keep) {
   require_valid(settings);
   require_same_mesh(model, progress.state);
+  require_measurable(model, stretched, path, settings);
   const auto start = std::chrono::steady_clock::now();
   const double earlier_wall_s = progress.wall_s;
   const ToolProgram program(path, settings.cut, settings.tool);

@@ -20,6 +20,8 @@ namespace {
 constexpr double kBeyondWallMm =
     4.0;  // the search for live tissue beside the mid-line ends this far behind the kerf's mean wall, which is rough
 
+constexpr double kEdgeOnSkinMm = 0.5;  // points of the tumour edge may lie this far outside the flat faces
+
 /// The layer in which the inner edge of a cut by points is read: nodes below the body's border, where the kerf is
 /// rounded.
 constexpr KerfMidlineSettings kEdgeLayer{.layer_top_mm = 0.2, .layer_bottom_mm = 0.8, .min_coverage = 0.5};
@@ -48,14 +50,21 @@ KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, con
   return kerf;
 }
 
+bool has_edge(const ToolPath& path) {
+  return path.tumor_edge.points.size() >= 3;
+}
+
+void require_on_tissue(bool is_on_tissue, std::size_t i) {
+  INCISE_REQUIRE(is_on_tissue,
+                 fmt::format("point {} of the tumour edge lies farther than {} mm from the tissue", i, kEdgeOnSkinMm));
+}
+
 /// Returns the positions after the cut of a curve's material points in the stretched tissue.
 Contour carried(const Contour& curve, const std::function<std::optional<Vec3>(const Vec3&, double)>& place_after) {
-  constexpr double kOnSkinMm = 0.5;  // points of a curve on the skin may lie this far outside the flat faces
   Contour moved{{}, curve.is_closed};
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
-    const std::optional<Vec3> place = place_after(curve.points[i], kOnSkinMm);
-    INCISE_REQUIRE(place.has_value(),
-                   fmt::format("point {} of the tumour edge lies farther than {} mm from the tissue", i, kOnSkinMm));
+    const std::optional<Vec3> place = place_after(curve.points[i], kEdgeOnSkinMm);
+    require_on_tissue(place.has_value(), i);
     moved.points.push_back(*place);
   }
   return moved;
@@ -94,7 +103,7 @@ void measure_midline(const KerfInput& kerf, const KerfMidlineSettings& midline_s
 /// Measures the tumour edge after the cut, and the inner edge of a ring, for a cut by points.
 void measure_final_edges(const KerfInput& kerf, const PartedTissue& tissue, const ToolPath& path,
                          IncisionResult& result) {
-  if (path.tumor_edge.points.size() < 3) return;
+  if (!has_edge(path)) return;
   result.final_tumor_edge =
       carried(path.tumor_edge, [&](const Vec3& p, double mm) { return tissue.place_after(p, mm); });
   if (!path.is_closed) return;
@@ -107,7 +116,7 @@ void measure_final_edges(const KerfInput& kerf, const PartedTissue& tissue, cons
 /// The same for a cut by whole tets.
 void measure_final_edges(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
                          const IncisionSettings& settings, double bridge_mm, IncisionResult& result) {
-  if (path.tumor_edge.points.size() < 3) return;
+  if (!has_edge(path)) return;
   const TissueState& tissue = result.final_state.tissue;
   const TetLocator locator(model.mesh, stretched.positions);
   result.final_tumor_edge = carried(path.tumor_edge, [&](const Vec3& p, double tolerance_mm) -> std::optional<Vec3> {
@@ -136,6 +145,15 @@ std::optional<ClosedRing> shallowest_closed_ring(const KerfMeasures& kerf, const
     return ring;
   }
   return std::nullopt;
+}
+
+void require_measurable(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                        const IncisionSettings& settings) {
+  if (!settings.tumor_surface.triangles.empty()) require_volume(settings.tumor_surface);
+  if (!has_edge(path)) return;
+  const TetLocator locator(model.mesh, stretched.positions);
+  for (std::size_t i = 0; i < path.tumor_edge.points.size(); ++i)
+    require_on_tissue(locator.locate(path.tumor_edge.points[i], kEdgeOnSkinMm).has_value(), i);
 }
 
 void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path,

@@ -11,6 +11,10 @@ namespace incise {
 /// Thickness of a layer: about two tets, so that a single tet does not decide whether the layer is cut.
 inline constexpr double kLayerThicknessMm = 1.0;
 
+/// Checks, before a cut is computed, what measuring it will require. @throws InvalidArgument as measure_kerf.
+void require_measurable(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
+                        const IncisionSettings& settings);
+
 /// Measures a cut and stores the measures in `result`: mid-line of the kerf in the stretched reference, inner edge and
 /// tumour edge in the final configuration, whether a ring closed, and IncisionResult::kerf. Uses result.record and
 /// result.final_state. Takes the measures in parallel.
@@ -26,9 +30,11 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
 [[nodiscard]] std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const Vec3> stretched,
                                                     const ToolPath& path, const IncisionSettings& settings,
                                                     const CutState& state);
+/// @throws InvalidArgument for a tumour surface that does not enclose a volume.
+void require_volume(const TriMesh& tumor_surface);
 /// @param body   of the kerf.
 /// @param depth  of the kerf, for DeepMargin::floor_below_mm.
-/// @throws InvalidArgument for a tumour surface that does not enclose a volume.
+/// @throws InvalidArgument as require_volume.
 [[nodiscard]] std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& depth,
                                                     const IncisionSettings& settings);
 

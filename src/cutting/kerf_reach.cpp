@@ -78,12 +78,16 @@ DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const In
   return result;
 }
 
+void require_volume(const TriMesh& tumor_surface) {
+  const double volume = enclosed_volume_mm3(tumor_surface);
+  INCISE_REQUIRE(volume > 0.0, fmt::format("expected a tumour surface that encloses a volume, found {} mm³", volume));
+}
+
 std::optional<DeepMargin> deep_margin(const KerfBody& body, const DepthReached& depth,
                                       const IncisionSettings& settings) {
   const TriMesh& tumor = settings.tumor_surface;
   if (tumor.triangles.empty() || body.surface.triangles.empty()) return std::nullopt;
-  const double volume = enclosed_volume_mm3(tumor);
-  INCISE_REQUIRE(volume > 0.0, fmt::format("expected a tumour surface that encloses a volume, found {} mm³", volume));
+  require_volume(tumor);
   const Vec3& approach = settings.approach;
   const SurfaceQuery tumor_query(tumor);
   const SurfaceQuery kerf_query(body.surface);

@@ -11,9 +11,7 @@
 namespace incise {
 namespace {
 
-constexpr double kAbsoluteZeroC = -273.15;
-constexpr double kLeastDamageC = 45.0;  // below it damage takes hours [Pearce2010]: temperature alone does not decide
-constexpr double kLeastRiseK = 5.0;     // above the body: towards 0 the half width grows without bound
+constexpr double kLeastRiseK = 5.0;        // above the body: towards 0 the half width grows without bound
 constexpr double kLeastRadius = 1e-12;     // in units of 2 a / v
 constexpr double kSeriesFrom = 40.0;       // from here the asymptotic series is exact to all digits, while K itself
                                            // approaches underflow

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -89,11 +90,11 @@ std::optional<std::size_t> fewest_specimens(double effect, TestDesign design, do
   if (suffices(2)) return 2;
   std::size_t low = 2;
   std::size_t high = 4;
-  while (high <= kMost && !suffices(high)) {
+  while (!suffices(high)) {
+    if (high == kMost) return std::nullopt;
     low = high;
-    high *= 2;
+    high = std::min(2 * high, kMost);
   }
-  if (high > kMost) return std::nullopt;
   while (high - low > 1) {
     const std::size_t middle = low + (high - low) / 2;
     (suffices(middle) ? high : low) = middle;

@@ -5,6 +5,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -105,11 +106,11 @@ std::optional<std::size_t> fewest_for_significance(const SampleMoments& before, 
   constexpr std::size_t kMost = 10'000'000;
   std::size_t low = 1;  // too few, unless there is no spread at all
   std::size_t high = 2;
-  while (high < kMost && p_for(high) >= alpha) {
+  while (p_for(high) >= alpha) {
+    if (high == kMost) return std::nullopt;
     low = high;
-    high *= 2;
+    high = std::min(2 * high, kMost);
   }
-  if (high >= kMost) return std::nullopt;
   while (high - low > 1) {
     const std::size_t middle = low + (high - low) / 2;
     (p_for(middle) < alpha ? high : low) = middle;

@@ -38,6 +38,10 @@ void require_splits_of(const TetMesh& whole, const MeshSplits& splits) {
   const auto is_out_of_order = [](const SplitTet& a, const SplitTet& b) { return !(a.whole < b.whole); };
   INCISE_REQUIRE(std::ranges::adjacent_find(splits.changed, is_out_of_order) == splits.changed.end(),
                  "splits: expected changed tets in ascending order, each once");
+  for (const SplitTet& copy : splits.copies)
+    INCISE_REQUIRE(std::ranges::binary_search(splits.changed, copy.whole, {}, &SplitTet::whole),
+                   fmt::format("splits: expected tet {} among the changed ones as it has a copy, found only the copy",
+                               copy.whole.value));
   constexpr double kRounding = 1e-9;
   for (const auto& [tet, sum] : shares)
     INCISE_REQUIRE(std::abs(sum - 1.0) <= kRounding,

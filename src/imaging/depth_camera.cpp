@@ -173,6 +173,8 @@ LiftedLine lift_to_space(const std::vector<Vec2>& points_px, bool is_closed, con
                          const LiftSettings& settings, const std::filesystem::path& name) {
   const std::size_t n = points_px.size();
   INCISE_REQUIRE(n >= 2, "expected a line of at least 2 points");
+  INCISE_REQUIRE(settings.max_hole_mm >= 0.0,
+                 fmt::format("expected max_hole_mm of 0 or more, found {}", settings.max_hole_mm));
   std::vector<std::optional<Vec3>> found;
   for (const Vec2& p : points_px) found.push_back(position_at(cloud, p, settings.window_px));
   const auto refuse = [&](std::size_t i, const std::string& size) {

@@ -76,6 +76,8 @@ Vec2 middle_of(const std::vector<Vec2>& points) {
 
 PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale& scale, const PhotoSettings& settings,
                                   const std::filesystem::path& name) {
+  INCISE_REQUIRE(settings.max_gap_mm >= 0.0 && std::isfinite(settings.max_gap_mm),
+                 fmt::format("expected max_gap_mm of 0 or more, found {}", settings.max_gap_mm));
   imaging_detail::hold_opencv_threads();
   PhotoContours result;
   const imaging_detail::InkStrengths strengths = imaging_detail::ink_strengths(picture);

@@ -328,13 +328,18 @@ namespace {
 
 enum class Source { Scan, Labels };
 
-Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Workers& workers,
-                      Monitor& monitor, const std::optional<Verdict>& of_scan = {}) {
+/// @throws CaseError that lists every violation.
+void require_settings_in_range(const SegmentationSettings& settings) {
   const std::vector<Problem> problems = validate(settings);
   if (!problems.empty())
     throw CaseError("segmentation", "settings",
                     fmt::format("{} violation(s): {}", problems.size(), fmt::join(sentences(problems), "; ")),
                     "settings in their ranges");
+}
+
+Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Workers& workers,
+                      Monitor& monitor, const std::optional<Verdict>& of_scan = {}) {
+  require_settings_in_range(settings);
   require_sound_volume(ct);
   const auto report = [&](double fraction) {
     throw_if_cancelled(monitor, kStage);
@@ -395,7 +400,7 @@ void require_labels(const LabelVolume& labels, const SegmentationSettings& setti
   for (std::size_t v = 0; v < labels.voxels.size() && !is_labelled; ++v) {
     if (labels.voxels[v] == 0) continue;
     const auto [i, j, k] = grid.voxel_at(v);
-    is_labelled = !settings.roi_box_mm || settings.roi_box_mm->contains(grid.world_from_index(Vec3(i, j, k)));
+    is_labelled = is_in_roi(settings.roi_box_mm, grid.world_from_index(Vec3(i, j, k)));
   }
   if (!is_labelled) throw CaseError("segmentation", "labels", "0 in every voxel of the region", "labelled tissue");
   for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s) {
@@ -428,8 +433,7 @@ Segmentation segment_labels(const LabelVolume& labels, const SegmentationSetting
   INCISE_REQUIRE(
       labels.voxels.size() == labels.grid.voxel_count(),
       fmt::format("expected {} voxels for the grid, found {}", labels.grid.voxel_count(), labels.voxels.size()));
-  const std::vector<Problem> problems = validate(settings);
-  if (!problems.empty()) throw CaseError("segmentation", problems.front());
+  require_settings_in_range(settings);
   const LabelVolume tissue = tissue_of(labels, settings);
   require_labels(tissue, settings);
   const CtVolume two_valued{labels.grid, {tissue.voxels.begin(), tissue.voxels.end()}};

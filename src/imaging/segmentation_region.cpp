@@ -55,13 +55,6 @@ bool is_empty(const IndexBox& box) {
   return box.low[0] >= box.high[0] || box.low[1] >= box.high[1] || box.low[2] >= box.high[2];
 }
 
-// Room for rounding: a box that ends on a voxel centre contains it.
-bool is_in_roi(const std::optional<Box3>& roi_mm, const Vec3& p) {
-  constexpr double kRoundingMm = 1e-6;
-  return !roi_mm || ((p.array() >= roi_mm->min().array() - kRoundingMm).all() &&
-                     (p.array() <= roi_mm->max().array() + kRoundingMm).all());
-}
-
 void fill_working_volume(const CtVolume& ct, const SegmentationSettings& settings, const IndexBox& box,
                          const std::array<int, 3>& low, WorkingVolume& work) {
   const VolumeGrid& grid = work.hu.grid;
@@ -139,6 +132,12 @@ void require_tissue(const WorkingVolume& work, const SegmentationSettings& setti
 }
 
 }  // namespace
+
+bool is_in_roi(const std::optional<Box3>& roi_mm, const Vec3& p) {
+  constexpr double kRoundingMm = 1e-6;
+  return !roi_mm || ((p.array() >= roi_mm->min().array() - kRoundingMm).all() &&
+                     (p.array() <= roi_mm->max().array() + kRoundingMm).all());
+}
 
 VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low, const std::array<int, 3>& size) {
   VolumeGrid part = grid;

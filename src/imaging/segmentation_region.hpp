@@ -5,6 +5,7 @@
 #include <incise/imaging/segmentation.hpp>
 
 #include <array>
+#include <optional>
 
 namespace incise {
 
@@ -16,6 +17,10 @@ struct WorkingVolume {
   Mask in_window;  ///< the tissue in the region
   std::vector<std::uint8_t> unedited;  ///< voxels of in_window before the edits; empty if there are no edits
 };
+
+/// Returns whether a voxel with its centre at `p` lies in the region of interest, with room for rounding: a box that
+/// ends on a voxel centre contains it. Without a box, every voxel does.
+[[nodiscard]] bool is_in_roi(const std::optional<Box3>& roi_mm, const Vec3& p);
 
 /// Returns a grid of `size` voxels whose first voxel is voxel `low` of `grid`; it may lie outside `grid`.
 [[nodiscard]] VolumeGrid sub_grid(const VolumeGrid& grid, const std::array<int, 3>& low,

@@ -130,6 +130,8 @@ ChosenTool tool_of(const ExperimentJson& calibration) {
 ExperimentSettings possible(ExperimentSettings settings) {
   INCISE_REQUIRE(settings.bench == 1 || settings.bench == 2,
                  fmt::format("expected bench 1 or 2, found {}", settings.bench));
+  INCISE_REQUIRE(settings.specimens > 0 && settings.specimens % 2 == 0,
+                 fmt::format("expected an even number of specimens above 0, found {}", settings.specimens));
   if (settings.bench == 2 && settings.outside)
     throw CaseError("command line", "--outside", fmt::format("{} on the second bench", *settings.outside),
                     "the option on the first one alone", "Specimens of the second differ from one another as it is.");

@@ -5,6 +5,8 @@
 #include "mechanics/rotation.hpp"
 #include "mechanics/volume_averages.hpp"
 
+#include <incise/core/error.hpp>
+
 #include <optional>
 
 namespace incise {
@@ -145,6 +147,8 @@ bool is_plain_corotational(const TissueModel& model) {
 
 void add_law_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
                       Tangent tangent, Workers& workers) {
+  INCISE_REQUIRE(stiffness == nullptr || stiffness->pattern == model.pattern,
+                 "expected a matrix of the model's own pattern");
   TetResponses tets(model, state, workers);
   tets.find_stresses();
   if (stiffness != nullptr) tets.find_tangents(tangent);

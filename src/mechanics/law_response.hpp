@@ -8,7 +8,7 @@ namespace incise {
 [[nodiscard]] bool is_plain_corotational(const TissueModel& model);
 
 /// add_elastic_response for every law, with or without averaged volume and fibres. @pre the caller has checked all
-/// sizes.
+/// sizes.  @throws InvalidArgument for a matrix of another pattern.
 void add_law_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
                       Tangent tangent, Workers& workers);
 

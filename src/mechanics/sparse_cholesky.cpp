@@ -1,4 +1,5 @@
 #include "mechanics/blas.hpp"
+#include "mechanics/factor_status.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/mechanics/solvers.hpp>
@@ -9,6 +10,13 @@
 #include <algorithm>
 
 namespace incise {
+
+bool is_positive_definite(int cholmod_status) {
+  INCISE_REQUIRE(cholmod_status != CHOLMOD_OUT_OF_MEMORY, "not enough memory for the factor");
+  INCISE_REQUIRE(cholmod_status >= CHOLMOD_OK,  // above: warnings of a pivot that is negative or too small
+                 fmt::format("CHOLMOD could not factor the matrix (status {})", cholmod_status));
+  return cholmod_status == CHOLMOD_OK;
+}
 
 struct SparseCholesky::Data {
   std::shared_ptr<const BlockPattern> pattern;
@@ -77,9 +85,9 @@ bool SparseCholesky::factor(const BlockMatrix& matrix) {
   hold_blas_to_one_thread();
   auto* values = static_cast<double*>(d.lower->x);
   for (std::size_t i = 0; i < d.source.size(); ++i) values[i] = matrix.values[static_cast<std::size_t>(d.source[i])];
+  d.is_factored = false;  // whatever happens, the last factor is gone
   cholmod_l_factorize(d.lower, d.factor, &d.common);
-  INCISE_REQUIRE(d.common.status != CHOLMOD_OUT_OF_MEMORY, "not enough memory for the factor");
-  d.is_factored = d.common.status == CHOLMOD_OK;
+  d.is_factored = is_positive_definite(d.common.status);
   return d.is_factored;
 }
 

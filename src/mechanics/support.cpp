@@ -18,6 +18,8 @@ void add_support_response(const TissueModel& model, const TissueState& state, st
                           BlockMatrix* stiffness) {
   INCISE_REQUIRE(forces.size() == model.mesh.vertices.size(),
                  fmt::format("expected {} forces, found {}", model.mesh.vertices.size(), forces.size()));
+  INCISE_REQUIRE(stiffness == nullptr || stiffness->pattern == model.pattern,
+                 "expected a matrix of the model's own pattern");
   for (const SupportPlane& support : model.supports) {
     for (std::size_t i = 0; i < support.vertices.size(); ++i) {
       const std::size_t v = support.vertices[i].index();

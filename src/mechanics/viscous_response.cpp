@@ -142,6 +142,8 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
   check(model, state, step_s);
   INCISE_REQUIRE(forces.size() == model.mesh.vertices.size(),
                  fmt::format("expected {} forces, found {}", model.mesh.vertices.size(), forces.size()));
+  INCISE_REQUIRE(stiffness == nullptr || stiffness->pattern == model.pattern,
+                 "expected a matrix of the model's own pattern");
   const ViscousTets tets(model, state, step_s);
   struct Response {
     Mat3 f, stress, geometric;

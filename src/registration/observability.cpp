@@ -143,11 +143,12 @@ PoseObservability pose_observability(const SampledSurface& source, const Sampled
     }
     const double variance = overlap.rms * overlap.rms / (independent * std::max(visible, kLeastVisible));
     total += variance;
-    if (k == 0) {
-      certificate.weakest_sd_mm = std::sqrt(variance);
+    // Not always motion 0: only the first two are measured, and measuring may find them more visible than a later one.
+    const double sd = std::sqrt(variance);
+    if (k == 0 || sd > certificate.weakest_sd_mm) {
+      certificate.weakest_sd_mm = sd;
       certificate.weakest = name_of(direction, overlap.length);
     }
-    certificate.weakest_sd_mm = std::max(certificate.weakest_sd_mm, std::sqrt(variance));
     certificate.covariance += variance * direction * direction.transpose();
   }
   set_covariance(certificate, certificate.covariance, certificate.center_mm, overlap.length);

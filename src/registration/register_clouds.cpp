@@ -3,6 +3,7 @@
 #include "registration/mirror_image.hpp"
 #include "registration/observability.hpp"
 #include "registration/pose_search.hpp"
+#include "registration/rival_reason.hpp"
 #include "registration/settling.hpp"
 #include "registration/shape_residual.hpp"
 
@@ -327,12 +328,12 @@ class Registering {
     const double largest_sd = settings_.settling_mm > 0.0 ? settings_.largest_settled_sd : settings_.largest_sd;
     fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < largest_sd),
          RegistrationOutcome::IllDetermined,
-         fmt::format("{} hardly changes the residual: its standard deviation is {:.3g} mm, and {:.2g} % of it shows",
+         fmt::format("{} hardly changes the residual: its standard deviation is {:.3g} mm, and {:.2g} % of the least "
+                     "visible motion shows",
                      c.weakest.empty() ? "a motion" : c.weakest, c.weakest_sd_mm * frame_.length,
                      100.0 * c.sharpness[0]));
     fail(result.rival_score > settings_.largest_rival * result.score, RegistrationOutcome::Ambiguous,
-         fmt::format("another pose fits about as well: {:.0f} % of the score",
-                     100.0 * result.rival_score / result.score));
+         rival_reason(result.rival_score, result.score));
     const double scale = result.T_target_source.scale;
     const double tiny = kAtLimit * scale;
     result.scale_at_limit =

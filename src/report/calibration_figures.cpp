@@ -88,6 +88,12 @@ void require_grid(const ScoreGrid& grid) {
   INCISE_REQUIRE(!grid.cells.empty() && grid.cells.size() == grid.speeds_mm_s.size() * grid.dullnesses.size(),
                  fmt::format("expected a cell for each of {} speeds and {} values of dullness, found {}",
                              grid.speeds_mm_s.size(), grid.dullnesses.size(), grid.cells.size()));
+  for (const auto* values : {&grid.speeds_mm_s, &grid.dullnesses}) {
+    for (const double value : *values) {
+      INCISE_REQUIRE(std::isfinite(value),
+                     fmt::format("expected finite speeds and values of dullness, found {}", value));
+    }
+  }
   INCISE_REQUIRE(!grid.chosen || *grid.chosen < grid.cells.size(), "expected the chosen cell among the cells");
   for (const ScoreGrid::Cell& cell : grid.cells) {
     INCISE_REQUIRE(std::isfinite(cell.score_percent) && std::isfinite(cell.mean_signed_mm.value_or(0.0)),

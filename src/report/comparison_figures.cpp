@@ -17,7 +17,7 @@ constexpr std::string_view kBefore = ink::kSeries[0];
 constexpr std::string_view kAfter = ink::kSeries[1];
 /// Colours of the incisions of one side: the side's hue in different lightness.
 constexpr std::array<std::string_view, 4> kBeforeShades{"#6b6b6b", "#a3a39c", "#3d3d3d", "#8a7f6d"};
-constexpr std::array<std::string_view, 4> kAfterShades{"#0072b2", "#56b4e9", "#013f66", "#009e73"};
+constexpr std::array<std::string_view, 4> kAfterShades{"#0072b2", "#56b4e9", "#013f66", "#2f93cf"};
 
 void require_series(std::span<const ErrorSeries> series) {
   INCISE_REQUIRE(!series.empty(), "expected at least one incision");

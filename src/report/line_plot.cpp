@@ -30,24 +30,32 @@ struct AxisRange {
 AxisRange range_of(const LinePlot& plot, bool is_x) {
   const bool is_log = is_x ? plot.is_log_x : plot.is_log_y;
   AxisRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  const auto widen = [&](const std::string& name, const std::vector<double>& values) {
+  const auto widen = [&](const std::vector<double>& values) {
     for (const double value : values) {
       const double place = is_log ? std::log10(value) : value;
-      INCISE_REQUIRE(std::isfinite(place),
-                     fmt::format("series \"{}\": expected numbers that the axis can show, found {}", name, value));
       range.low = std::min(range.low, place);
       range.high = std::max(range.high, place);
     }
   };
   for (const LineSeries& series : plot.series) {
-    widen(series.name, is_x ? series.x : series.y);
+    widen(is_x ? series.x : series.y);
     if (is_x) continue;
-    widen(series.name, series.low);
-    widen(series.name, series.high);
+    widen(series.low);
+    widen(series.high);
   }
   double air = 0.06 * (range.high - range.low);
   if (!(air > 0.0)) air = std::max(1e-12, 0.5 * std::abs(range.high));
   return {range.low - air, range.high + air};
+}
+
+/// Adds the first number that an axis cannot show, if there is one.
+void check_numbers(const LineSeries& series, const std::vector<double>& values, bool is_log,
+                   std::vector<std::string>& problems) {
+  const auto bad = std::find_if(values.begin(), values.end(),
+                                [is_log](double value) { return !std::isfinite(is_log ? std::log10(value) : value); });
+  if (bad == values.end()) return;
+  problems.push_back(
+      fmt::format("series \"{}\": expected numbers that the axis can show, found {}", series.name, *bad));
 }
 
 /// Ticks at the marks of a logarithmic x axis, if these are few: sizes that double are easier to read than 1, 2, 5.
@@ -151,18 +159,29 @@ void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<Vec2>& 
 
 }  // namespace
 
-std::string line_plot_svg(const LinePlot& plot) {
-  INCISE_REQUIRE(!plot.series.empty(), "expected at least one series");
+std::vector<std::string> find_problems(const LinePlot& plot) {
+  std::vector<std::string> problems;
+  if (plot.series.empty()) problems.emplace_back("expected at least one series");
   for (const LineSeries& series : plot.series) {
-    INCISE_REQUIRE(!series.x.empty() && series.x.size() == series.y.size(),
-                   fmt::format("series \"{}\": expected as many y as x, at least one, found {} and {}", series.name,
-                               series.y.size(), series.x.size()));
-    INCISE_REQUIRE(
-        series.low.size() == series.high.size() && (series.low.empty() || series.low.size() == series.x.size()),
-        fmt::format("series \"{}\": expected no error bars or as many as points, {}, found {} lower and {} upper "
-                    "ends",
-                    series.name, series.x.size(), series.low.size(), series.high.size()));
+    if (series.x.empty() || series.x.size() != series.y.size()) {
+      problems.push_back(fmt::format("series \"{}\": expected as many y as x, at least one, found {} and {}",
+                                     series.name, series.y.size(), series.x.size()));
+    }
+    if (series.low.size() != series.high.size() || (!series.low.empty() && series.low.size() != series.x.size())) {
+      problems.push_back(fmt::format(
+          "series \"{}\": expected no error bars or as many as points, {}, found {} lower and {} upper ends",
+          series.name, series.x.size(), series.low.size(), series.high.size()));
+    }
+    check_numbers(series, series.x, plot.is_log_x, problems);
+    for (const auto* values : {&series.y, &series.low, &series.high})
+      check_numbers(series, *values, plot.is_log_y, problems);
   }
+  return problems;
+}
+
+std::string line_plot_svg(const LinePlot& plot) {
+  const std::vector<std::string> problems = find_problems(plot);
+  INCISE_REQUIRE(problems.empty(), problems.front());
   const AxisRange x = range_of(plot, true);
   const AxisRange y = range_of(plot, false);
   const std::vector<std::string> title = title_rows(plot.title);

@@ -26,6 +26,15 @@ class Findings {
   void check(bool is_good, const std::string& place, const std::string& problem) {
     if (!is_good) add(place, problem);
   }
+  void plot(const LinePlot& shown) {
+    for (const std::string& problem : find_problems(shown)) add("plot \"" + shown.title + "\"", problem);
+  }
+  void table(const ReportTable& shown) {
+    const bool is_even = std::all_of(shown.rows.begin(), shown.rows.end(), [&](const std::vector<std::string>& row) {
+      return row.size() == shown.columns.size();
+    });
+    check(is_even, "table \"" + shown.title + "\"", "has a row whose length is not the number of columns");
+  }
   [[nodiscard]] std::vector<std::string> take() { return std::move(problems_); }
 
  private:
@@ -120,6 +129,7 @@ void check_incision(Findings& findings, const ReportIncision& incision) {
   findings.number(incision.greatest_error_mm.value_or(0.0), place + ": greatest_error_mm");
   findings.number(incision.target_mm, place + ": target_mm");
   findings.number(incision.close_margin_mm, place + ": close_margin_mm");
+  findings.number(incision.kerf_allowance_mm, place + ": kerf_allowance_mm");
   for (const double error : incision.signed_error_mm) {
     if (std::isfinite(error)) continue;
     findings.number(error, place + ": signed_error_mm");
@@ -144,12 +154,14 @@ void check_tables(Findings& findings, const ReportData& data) {
     findings.number(check.value, "check " + check.name + ": value");
     findings.number(check.limit, "check " + check.name + ": limit");
   }
-  for (const ReportTable& table : data.tables) {
-    const bool is_even = std::all_of(table.rows.begin(), table.rows.end(), [&](const std::vector<std::string>& row) {
-      return row.size() == table.columns.size();
-    });
-    findings.check(is_even, "table \"" + table.title + "\"", "has a row whose length is not the number of columns");
-  }
+  for (const ReportTable& table : data.tables) findings.table(table);
+}
+
+void check_kerf_and_correction(Findings& findings, const ReportData& data) {
+  for (const LinePlot& plot : data.kerf_plots) findings.plot(plot);
+  findings.table(data.kerf_layers);
+  findings.table(data.correction);
+  for (const LinePlot& plot : data.correction_plots) findings.plot(plot);
 }
 
 }  // namespace
@@ -195,6 +207,7 @@ std::vector<std::string> find_problems(const ReportData& data) {
   for (const ReportAnimation& animation : data.animations) check_animation(findings, animation);
   for (const ReportIncision& incision : data.incisions) check_incision(findings, incision);
   check_tables(findings, data);
+  check_kerf_and_correction(findings, data);
   return findings.take();
 }
 

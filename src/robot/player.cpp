@@ -264,7 +264,10 @@ void describe(Visitor& v, Replay& r) {
 Replay play(const WrittenProgram& program, const ArmModel& arm, const PlayerSettings& settings,
             const ToolPath* intended) {
   require_none(problems_of(settings));
-  INCISE_REQUIRE(program.joints.size() >= 2 || program.commands.size() >= 2, "expected a program with motions");
+  INCISE_REQUIRE(program.joints.size() >= 2 || (program.joints.empty() && program.commands.size() >= 2),
+                 fmt::format("found a program of {} commands and {} rows of joints, expected at least 2 rows of joints "
+                             "or, without joints, at least 2 commands",
+                             program.commands.size(), program.joints.size()));
   Replay replay;
   replay.settings = settings;
   Playing playing(program, arm, settings, replay);

@@ -93,7 +93,8 @@ class Cutting {
       done.push_back(part.empty() ? 0.0 : done.back() + std::max(way, time));
       part.push_back(pose);
     }
-    INCISE_REQUIRE(part.size() >= 2 && done.back() > 0.0, "expected a course that cuts");
+    INCISE_REQUIRE(part.size() >= 2 && done.back() > 0.0 && part.back().time_s > part.front().time_s,
+                   "expected a course that cuts");
     const int steps = static_cast<int>(std::ceil(done.back()));
     std::vector<TipPose> poses;
     std::size_t segment = 0;

@@ -230,7 +230,8 @@ double prescribed_power_w(const Specimen& specimen) {
 }
 
 void describe(Visitor& v, Specimen& specimen) {
-  v("seed", specimen.seed, "Of the shape, of the fields inside, of all noise and of every parameter.");
+  v("seed", specimen.seed,
+    "Of the shape, of the fields inside, of all noise and of all parameters but the hand-eye error.");
   v("series", specimen.series, "Of the hand-eye error: specimens of one series share it.");
   for (const Parameter& parameter : kParameters)
     v(parameter.name, specimen.*parameter.member, parameter.meaning, Range{parameter.low, parameter.high});

@@ -68,6 +68,12 @@ TEST(ScoreTable, ComparesInnerEdgesWithInnerEdgesBesideThePapersScore) {
   EXPECT_LT(table.rows[0].percent, 20.0);
 }
 
+TEST(ScoreTable, RefusesASuccessWithoutErrors) {
+  CalibrationRun run = scored(1.0, 2.0);
+  run.paper_abs_error_mm.reset();
+  EXPECT_THROW(static_cast<void>(score_table({{run}}, kOne)), InvalidArgument);
+}
+
 TEST(ScoreTable, RefusesListsOfDifferentLength) {
   EXPECT_THROW(static_cast<void>(score_table({kFirst, {open_ring()}}, kTwo)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(score_table({}, {})), InvalidArgument);

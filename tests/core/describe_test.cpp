@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace incise {
 namespace {
@@ -85,6 +86,12 @@ TEST(DescribedBytes, GiveBackEveryFieldWithAllItsBits) {
   EXPECT_EQ(back.marks, o.marks);
   EXPECT_EQ(back.edges.at(0)[1].value, 4);
   EXPECT_EQ(back.by_name.at("x").count, 4);
+}
+
+TEST(DescribedBytes, GiveBackEveryUnsignedNumber) {
+  constexpr std::uint64_t kLargestSigned = std::numeric_limits<std::int64_t>::max();
+  for (const std::uint64_t seed : {kLargestSigned, kLargestSigned + 1, std::numeric_limits<std::uint64_t>::max()})
+    EXPECT_EQ(from_bytes<std::uint64_t>(bytes_of(seed), "test"), seed);
 }
 
 TEST(DescribedBytes, DifferWhereAnyFieldDiffers) {

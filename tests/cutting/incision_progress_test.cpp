@@ -119,6 +119,15 @@ TEST_F(InterruptedIncision, ShowsEveryRenewalStepOfAnUninterruptedRunWhileTheTis
   testing::expect_same(expected, go_on(shown.back(), 1, silent_), "resumed while coming to rest");
 }
 
+TEST_F(InterruptedIncision, KeepsALastFrameWithTheToolIn) {
+  StopAfter monitor(5);
+  const IncisionResult stopped = go_on(begin(), 1, monitor);
+  ASSERT_EQ(stopped.outcome, Outcome::Cancelled);
+  ASSERT_FALSE(stopped.frames.empty());
+  EXPECT_EQ(stopped.frames.back().step, 5);
+  EXPECT_TRUE(stopped.frames.back().is_tool_in);
+}
+
 TEST_F(InterruptedIncision, AddsUpTheTimeOfAllItsRuns) {
   IncisionProgress progress = begin();
   progress.wall_s = 1000.0;

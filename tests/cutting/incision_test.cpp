@@ -234,6 +234,37 @@ TEST_F(Incision, StopsWhereItIsWhenAskedTo) {
   EXPECT_EQ(result.outcome, Outcome::Cancelled);
 }
 
+/// Counts the steps that are reported.
+class StepCounter : public Monitor {
+ public:
+  void progress(std::string_view, double) override { ++steps; }
+  int steps = 0;
+};
+
+TEST_F(Incision, ATumourThatCannotBeMeasuredIsRefusedBeforeTheCut) {
+  const auto refusal = [this](const ToolPath& path) -> std::string {
+    StepCounter counter;
+    Workers workers(1);
+    try {
+      static_cast<void>(simulate_incision(model_, rest_state(model_), path, settings_, workers, counter));
+    } catch (const InvalidArgument& error) {
+      EXPECT_EQ(counter.steps, 0);
+      return error.what();
+    }
+    return "nothing";
+  };
+  ToolPath path = ring(4.0);
+  path.tumor_edge.points[3].z() += 0.6;
+  const std::string off_tissue = refusal(path);
+  EXPECT_NE(off_tissue.find("point 3 of the tumour edge lies farther than 0.5 mm from the tissue"), std::string::npos)
+      << off_tissue;
+  settings_.tumor_surface = boundary_surface(make_block(Vec3::Ones(), {1, 1, 1}));
+  for (Triangle& t : settings_.tumor_surface.triangles) std::swap(t[0], t[1]);  // inside out
+  const std::string no_volume = refusal(ring(4.0));
+  EXPECT_NE(no_volume.find("expected a tumour surface that encloses a volume, found -"), std::string::npos)
+      << no_volume;
+}
+
 TEST_F(Incision, SettingsThatCannotBeUsedAreListed) {
   settings_.cut.speed_mm_s = 0.0;
   settings_.frames = -1;

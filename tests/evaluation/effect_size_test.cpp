@@ -77,6 +77,16 @@ TEST(FewestSpecimens, AreThoseOfPrintedTables) {
   EXPECT_EQ(fewest_specimens(50.0, TestDesign::Unpaired), 2U);
 }
 
+TEST(FewestSpecimens, AreFoundUpToAMillion) {
+  // (1.959964 + 0.841621)² / 0.003² + 1.959964² / 2 = 872 099.7; for an effect of 0.0028 it is 1 001 135.
+  const auto n = fewest_specimens(0.003, TestDesign::Paired);
+  ASSERT_TRUE(n.has_value());
+  EXPECT_NEAR(static_cast<double>(*n), 872'100.0, 3.0);
+  EXPECT_GE(t_test_power(0.003, *n, TestDesign::Paired), 0.8);
+  EXPECT_LT(t_test_power(0.003, *n - 1, TestDesign::Paired), 0.8);
+  EXPECT_FALSE(fewest_specimens(0.0028, TestDesign::Paired).has_value());
+}
+
 TEST(FewestSpecimens, RefusesAPowerThatChanceHasAlready) {
   EXPECT_THROW(static_cast<void>(fewest_specimens(1.0, TestDesign::Paired, 0.05, 0.05)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(t_test_power(1.0, 1, TestDesign::Paired)), InvalidArgument);

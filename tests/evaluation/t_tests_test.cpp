@@ -109,6 +109,16 @@ TEST(FewestForSignificance, TellsWhatThePapersPValueClaims) {
   EXPECT_FALSE(fewest_for_significance({0, 1.0, 1.0}, {0, 1.0, 1.0}, 0.05).has_value());
 }
 
+TEST(FewestForSignificance, IsFoundUpToTenMillionValues) {
+  // 2 · (1.959964 / 0.00092)² = 9 077 171; for a difference of 0.00087 it is 10 150 505.
+  const auto n = fewest_for_significance({0, 0.0, 1.0}, {0, 0.00092, 1.0}, 0.05);
+  ASSERT_TRUE(n.has_value());
+  EXPECT_NEAR(static_cast<double>(*n), 9'077'171.0, 10.0);
+  EXPECT_LT(*student_t_test({*n, 0.0, 1.0}, {*n, 0.00092, 1.0}).p, 0.05);
+  EXPECT_GE(*student_t_test({*n - 1, 0.0, 1.0}, {*n - 1, 0.00092, 1.0}).p, 0.05);
+  EXPECT_FALSE(fewest_for_significance({0, 0.0, 1.0}, {0, 0.00087, 1.0}, 0.05).has_value());
+}
+
 TEST(TTests, OfOneSpecimenEachSayThatTheyAreTooFew) {
   const SampleMoments one{.n = 1, .mean = 1.7, .sd = 0.0};
   for (const TTest& test : {student_t_test(one, one), welch_t_test(one, one)}) {

@@ -81,6 +81,10 @@ TEST(MeshSplits, OfAnotherMeshAreRefused) {
   bad = splits();
   bad.changed.push_back(bad.changed.front());
   EXPECT_THAT(refusal(bad), HasSubstr("in ascending order, each once"));
+  bad = splits();
+  bad.copies[0].share = 1.0;
+  bad.changed.clear();  // the whole tet would keep its share of 1, too
+  EXPECT_THAT(refusal(bad), HasSubstr("expected tet 1 among the changed ones"));
 }
 
 }  // namespace

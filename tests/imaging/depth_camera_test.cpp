@@ -3,6 +3,7 @@
 #include <incise/imaging/depth_camera.hpp>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace incise {
@@ -142,6 +143,12 @@ TEST(LiftToSpace, BridgesSmallHolesAndRefusesLargeOnesWithTheirSize) {
   } catch (const DataError& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("a hole in the depth under the mark"));
     EXPECT_THAT(error.what(), ::testing::HasSubstr("mm wide"));
+  }
+  for (const double hole_mm : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(
+        static_cast<void>(lift_to_space(ring_px(60.0), true, with_hole(4), {.max_hole_mm = hole_mm}, "depth.png")),
+        InvalidArgument)
+        << hole_mm;
   }
   OrganizedCloud nothing = with_hole(1);
   std::fill(nothing.is_measured.begin(), nothing.is_measured.end(), 0);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <limits>
 #include <numbers>
 
 namespace incise {
@@ -106,6 +107,15 @@ std::string refusal(const Scene& s, double mm_per_pixel = kScale) {
     return error.what();
   }
   return "";
+}
+
+TEST(FindPhotoContours, RefusesAGapThatIsNegativeOrNotFinite) {
+  const ColorPicture grey{8, 8, std::vector<std::uint8_t>(3 * 8 * 8, 128)};
+  for (const double gap_mm : {-0.5, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW(static_cast<void>(find_photo_contours(grey, scale_from_mm_per_pixel(kScale, grey.height),
+                                                       {.max_gap_mm = gap_mm}, kName)),
+                 InvalidArgument)
+        << gap_mm;
 }
 
 TEST(FindPhotoContours, RefusesWhatItCannotMeasure) {

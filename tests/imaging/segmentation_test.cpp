@@ -187,6 +187,31 @@ TEST(Segmentation, TakesTheLabelsThatAreNamed) {
   EXPECT_THROW(static_cast<void>(segment_labels(labels, settings, workers, monitor)), CaseError);
 }
 
+TEST(Segmentation, ListsEverySettingThatIsWrongForLabels) {
+  Monitor monitor;
+  Workers workers(1);
+  SegmentationSettings settings;
+  settings.label_values = {0, 7, 256};
+  try {
+    static_cast<void>(segment_labels(labels_of(ball_of_tissue(), -475, 1), settings, workers, monitor));
+    FAIL() << "values out of range were taken";
+  } catch (const CaseError& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("label_values[0]"), HasSubstr("label_values[2]")));
+  }
+}
+
+TEST(Segmentation, TakesLabelsWhoseCentresLieOnTheRegionsBorder) {
+  LabelVolume labels{grid_of(12, 12, 12, Vec3::Constant(0.1)), std::vector<std::uint8_t>(12 * 12 * 12, 0)};
+  for (std::size_t v = 0; v < labels.voxels.size(); ++v) labels.voxels[v] = labels.grid.voxel_at(v)[0] >= 3 ? 1 : 0;
+  SegmentationSettings settings;
+  settings.smoothing_mm = 0.0;
+  settings.roi_box_mm = Box3(Vec3::Constant(-1.0), Vec3(0.3, 2.0, 2.0));
+  ASSERT_GT(labels.grid.world_from_index(Vec3(3, 0, 0)).x(), 0.3) << "by rounding";
+  Monitor monitor;
+  Workers workers(1);
+  EXPECT_EQ(segment_labels(labels, settings, workers, monitor).voxels, 144U) << "one layer of 12 x 12";
+}
+
 TEST(Segmentation, RefusesARegionOrASeedWithoutALabel) {
   Monitor monitor;
   Workers workers(2);

@@ -1,6 +1,7 @@
 // One suite for every law: what must hold whatever the tissue is made of.
 #include "mechanics/bodies.hpp"
 
+#include <incise/core/error.hpp>
 #include <incise/mechanics/statics.hpp>
 #include <incise/mechanics/tissue.hpp>
 
@@ -348,6 +349,13 @@ TEST_P(EveryLaw, GivesTheSameBitsAtAnyThreadCountWithAndWithoutStiffness) {
     end_viscous_step(model, after, kStepS, alone);
     EXPECT_EQ(many.memory, after.memory) << threads << " threads";
   }
+}
+
+TEST_P(EveryLaw, RefusesAMatrixOfAnotherPattern) {
+  const TissueModel model = one_tet();
+  TissueState state = rest_state(model);
+  BlockMatrix other(block().pattern);
+  EXPECT_THROW(forces(model, state, &other), InvalidArgument);
 }
 
 TEST_P(EveryLaw, LeavesNothingOfACarvedTet) {

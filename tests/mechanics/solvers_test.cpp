@@ -1,4 +1,5 @@
 #include "mechanics/bodies.hpp"
+#include "mechanics/factor_status.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/mechanics/solvers.hpp>
@@ -66,6 +67,15 @@ TEST(SparseCholesky, SaysWhenTheMatrixIsNotPositiveDefinite) {
   SparseCholesky cholesky(system.model.pattern);
   system.matrix.block(system.model.pattern->diagonal[1])[0] = -1.0;
   EXPECT_FALSE(cholesky.factor(system.matrix));
+}
+
+TEST(SparseCholesky, TakesNoFailureOfCholmodForAMatrixThatIsNotPositiveDefinite) {
+  EXPECT_TRUE(is_positive_definite(0));   // CHOLMOD_OK
+  EXPECT_FALSE(is_positive_definite(1));  // CHOLMOD_NOT_POSDEF
+  EXPECT_FALSE(is_positive_definite(2));  // CHOLMOD_DSMALL
+  // Not installed, out of memory, too large, invalid, GPU problem.
+  for (const int failure : {-1, -2, -3, -4, -5})
+    EXPECT_THROW(static_cast<void>(is_positive_definite(failure)), InvalidArgument) << "status " << failure;
 }
 
 TEST(SparseCholesky, RefusesToSolveWithoutAFactor) {

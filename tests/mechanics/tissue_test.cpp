@@ -204,6 +204,15 @@ TEST(Support, PushesVerticesBehindThePlaneAndNeverPulls) {
   EXPECT_NEAR(support_penetration_mm(model, state), 0.05, 1e-15);
 }
 
+TEST(Support, RefusesAMatrixOfAnotherPattern) {
+  const std::vector<Constraint> constraints{kClamp, SupportConstraint{Vec3(0, 0, 0), Vec3(0, 0, 2)}};
+  const TissueModel model = block(constraints), other = block(constraints);
+  const TissueState state = rest_state(model);
+  Points forces(state.positions.size(), Vec3::Zero());
+  BlockMatrix matrix(other.pattern);
+  EXPECT_THROW(add_support_response(model, state, forces, &matrix), InvalidArgument);
+}
+
 TEST(HoldConstrained, MakesIdentityRowsAndKeepsSymmetry) {
   const TissueModel model = clamped_block({2, 2, 2});
   TissueState state = rest_state(model);

@@ -169,6 +169,15 @@ TEST(Viscosity, LeavesTheElasticResponseAlone) {
   EXPECT_EQ(testing::elastic_forces(viscous, a), testing::elastic_forces(elastic, b));
 }
 
+TEST(Viscosity, RefusesAMatrixOfAnotherPattern) {
+  const TissueModel model = block(with_prony({{0.8, 0.1}})), other = block(with_prony({{0.8, 0.1}}));
+  const TissueState state = rest_state(model);
+  Points forces(state.positions.size(), Vec3::Zero());
+  BlockMatrix matrix(other.pattern);
+  Workers workers(1);
+  EXPECT_THROW(add_viscous_response(model, state, 0.1, forces, &matrix, workers), InvalidArgument);
+}
+
 TEST(Viscosity, RefusesAStepOfNoLengthAndTheMemoryOfAnotherModel) {
   const TissueModel model = block(with_prony({{0.8, 0.1}}));
   TissueState state = rest_state(model);

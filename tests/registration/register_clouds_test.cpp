@@ -1,4 +1,6 @@
 #include "registration/clouds.hpp"
+#include "registration/observability.hpp"
+#include "registration/rival_reason.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
@@ -259,6 +261,39 @@ TEST_F(RegisterClouds, FewPointsAndLinesAreDegenerate) {
   PointCloud line;
   for (int i = 0; i < 100; ++i) line.points.emplace_back(i, i, i);
   EXPECT_EQ(run(line, good).outcome, RegistrationOutcome::Degenerate);
+}
+
+/// A grid on waves along x, every other row lifted and the next lowered. Its normals hardly show shifts, least those
+/// along x, although the waves make these plain.
+PointCloud waves(double lift_mm) {
+  const auto sign = [](int i) { return i % 2 == 0 ? 1.0 : -1.0; };
+  PointCloud cloud;
+  for (int i = 0; i < 16; ++i) {
+    for (int j = 0; j < 16; ++j) {
+      cloud.points.emplace_back(i, j, 0.5 * std::cos(0.25 * units::kPi * (i - 7.5)) + lift_mm * sign(j));
+      cloud.normals.push_back(Vec3(1e-4 * sign(i + j / 2), 1e-3 * sign(i + j), 1.0).normalized());
+    }
+  }
+  return cloud;
+}
+
+TEST(PoseObservability, NamesTheMotionWhoseStandardDeviationItGives) {
+  constexpr double kLiftMm = 0.05;
+  Workers workers(1);
+  const SampledSurface source(waves(kLiftMm), workers), target(waves(0.0), workers);
+  const PoseObservability found = pose_observability(source, target, Similarity{}, 1.0, false, workers);
+  // Motions 0 to 2 by the normals: a shift along x, a turn about z, a shift along y. The first two are measured.
+  ASSERT_NEAR(found.visible[2], 1e-6, 1e-8);
+  ASSERT_GT(std::min(found.sharpness[0], found.sharpness[1]), 1e-3);
+  EXPECT_THAT(found.weakest, ::testing::ContainsRegex("^a shift along \\(-?0\\.00, -?1\\.00, -?0\\.00\\)$"));
+  const double independent = 16.0 * 16.0 / 4.0;
+  const double expected_mm = kLiftMm / std::sqrt(independent * found.visible[2]);
+  EXPECT_NEAR(found.weakest_sd_mm, expected_mm, 1e-4 * expected_mm);
+}
+
+TEST(RivalReason, DividesByNoScoreOfZero) {
+  EXPECT_EQ(rival_reason(0.5, 0.625), "another pose fits about as well: 80 % of the score");
+  EXPECT_EQ(rival_reason(0.5, 0.0), "another pose fits better: its score is 0.500, that of the pose found is 0");
 }
 
 TEST_F(RegisterClouds, RefusesEmptyCloudsAndNumbersThatAreNone) {

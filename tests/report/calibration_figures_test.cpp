@@ -46,6 +46,12 @@ TEST(ScoreHeatMap, RefusesAGridWithHolesAndNumbersThatAreNotFinite) {
   grid = small_grid();
   grid.cells[0].score_percent = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(static_cast<void>(score_heat_map_svg(grid)), InvalidArgument);
+  grid = small_grid();
+  grid.speeds_mm_s[1] = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(static_cast<void>(score_heat_map_svg(grid)), InvalidArgument);
+  grid = small_grid();
+  grid.dullnesses[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(static_cast<void>(score_heat_map_svg(grid)), InvalidArgument);
 }
 
 TEST(DragFitFigure, ShowsEverySpecimenAndEveryMarginal) {

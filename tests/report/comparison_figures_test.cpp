@@ -1,4 +1,5 @@
 #include "report/markup.hpp"
+#include "report/plot.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/report/category_plot.hpp>
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <regex>
+#include <set>
 
 namespace incise {
 namespace {
@@ -112,6 +114,22 @@ TEST(ErrorByClock, GoesFromTwelveToTwelveAndLeavesGapsOpen) {
   expect_whole(svg);
   EXPECT_EQ(texts_between(svg, "<polyline", "/>").size(), 2U);
   EXPECT_EQ(texts_between(svg, "text-anchor=\"middle\" >12<", "/text>").size(), 2U);
+}
+
+TEST(ErrorByClock, DrawsFourIncisionsAfterInFourShadesOfBlue) {
+  const std::string svg = error_by_clock_svg(std::vector<ErrorSeries>{
+      series("s1", true, 0.0), series("s2", true, 0.1), series("s3", true, 0.2), series("s4", true, 0.3)});
+  std::set<std::string> shades;
+  for (const std::string& line : texts_between(svg, "<polyline", "/>")) {
+    const std::string shade = line.substr(line.find("stroke=\"#") + 8, 7);
+    shades.insert(shade);
+    const int red = std::stoi(shade.substr(1, 2), nullptr, 16), green = std::stoi(shade.substr(3, 2), nullptr, 16),
+              blue = std::stoi(shade.substr(5, 2), nullptr, 16);
+    EXPECT_LT(red, green) << shade;
+    EXPECT_LT(green, blue) << shade;
+  }
+  EXPECT_EQ(shades.size(), 4U);
+  EXPECT_EQ(shades.count(std::string(ink::kTumorEdge)), 0U);
 }
 
 TEST(ComparisonFigures, RefuseWhatCannotBeDrawn) {

@@ -47,6 +47,23 @@ TEST(FindProblems, NamesListsOfUnequalLength) {
   EXPECT_THAT(problems, Contains(HasSubstr("Calibration of speed and dullness")));
 }
 
+TEST(FindProblems, NamesWhatIsWrongWithTheKerfAndTheCorrection) {
+  ReportData data = testing::RingFixture(4.0).data(2);
+  data.incisions[0].kerf_allowance_mm = kNan;
+  data.kerf_plots = {
+      {.title = "Depth of the kerf", .x_label = "way, mm", .y_label = "mm", .series = {{"before", {0, 1}, {4, kNan}}}}};
+  data.kerf_layers = {"Mid-line by depth", {"cut", "depth, mm"}, {{"as planned", "2.50"}, {"corrected"}}};
+  data.correction = {"Pass by pass", {"pass", "mean, mm"}, {{"1"}}};
+  data.correction_plots = {{.title = "Mean error against the pass", .x_label = "pass", .y_label = "mm", .series = {}}};
+  EXPECT_THAT(find_problems(data),
+              ElementsAre(HasSubstr("incision \"Before\": kerf_allowance_mm: is not a finite number"),
+                          HasSubstr("plot \"Depth of the kerf\": series \"before\": expected numbers that the axis can "
+                                    "show, found nan"),
+                          HasSubstr("table \"Mid-line by depth\": has a row whose length"),
+                          HasSubstr("table \"Pass by pass\": has a row whose length"),
+                          HasSubstr("plot \"Mean error against the pass\": expected at least one series")));
+}
+
 TEST(FindProblems, NamesIndicesOutOfRangeAndAZeroDirection) {
   ReportData data = testing::RingFixture(4.0).data(2);
   data.mesh.mesh.tets[0][1] = VertexId{data.mesh.mesh.vertices.size()};

@@ -244,6 +244,16 @@ TEST(Player, RefusesSettingsOutOfRange) {
   EXPECT_THROW(static_cast<void>(play(program, ur10e(), {.speed_slider = 1.5})), InvalidArgument);
 }
 
+TEST(Player, RefusesASingleRowOfJointsBesideCommands) {
+  WrittenProgram program = program_from_text(script_of(line_path()), "cut.script");
+  ASSERT_GE(program.commands.size(), 2U);
+  program.joints = {TimedJoints{}};
+  EXPECT_THROW(static_cast<void>(play(program, ur10e())), InvalidArgument);
+  program.joints.clear();
+  program.commands.resize(1);
+  EXPECT_THROW(static_cast<void>(play(program, ur10e())), InvalidArgument);
+}
+
 TEST(ProgramFromText, ReadsBackWhatWasWritten) {
   const ToolPath path = leaning_ring();
   const WrittenProgram read = program_from_text(script_of(path), "cut.script");

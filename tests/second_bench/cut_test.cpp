@@ -177,6 +177,9 @@ TEST(SecondCut, StepsFollowTheWayAndADwell) {
   Monitor quiet;
   EXPECT_EQ(cut_specimen(plain_body(), course, 35.0, quiet).steps, 10 + 4);
   EXPECT_THROW((void)cut_specimen(plain_body(), {course[0], course[0]}, 35.0, quiet), InvalidArgument);
+  TipPose at_once = course[1];
+  at_once.time_s = course[0].time_s;
+  EXPECT_THROW((void)cut_specimen(plain_body(), {course[0], at_once}, 35.0, quiet), InvalidArgument);
   EXPECT_THROW((void)cut_specimen(plain_body(), course, std::nan(""), quiet), InvalidArgument);
 }
 

@@ -1,8 +1,12 @@
 #include "virtual_bench/small_bench.hpp"
 
+#include <incise/bench_kit/pictures.hpp>
+#include <incise/core/error.hpp>
 #include <incise/virtual_bench/readings.hpp>
 
 #include <gtest/gtest.h>
+
+#include <limits>
 
 namespace incise {
 namespace {
@@ -91,6 +95,18 @@ TEST(Readings, FrameAndCloudShowTheStretchedSkinItsMarkAndTheHoles) {
   expect_cloud_on_the_stretched_skin();
   expect_green_mark_on_the_tumours_edge();
   expect_holes_of_their_share();
+}
+
+TEST(ShootFrame, RefusesAShareOfHolesOutOfRangeAndATumourWithoutAnEdge) {
+  const Mat4 T_camera_specimen = Mat4::Identity();
+  SeenTissue nothing;  // in sight
+  EXPECT_THROW(static_cast<void>(shoot_frame(nothing, FrameNoise{}, T_camera_specimen)), InvalidArgument);
+  nothing.tumor_edge.points = {Vec3(0.0, 0.0, 200.0)};
+  for (const double percent : {-1.0, 100.5, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_THROW(static_cast<void>(shoot_frame(nothing, FrameNoise{.hole_percent = percent}, T_camera_specimen)),
+                 InvalidArgument)
+        << percent;
+  }
 }
 
 TEST(Readings, ForceAndElasticityShowStiffnessWithTheirNoise) {

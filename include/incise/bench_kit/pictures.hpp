@@ -53,12 +53,13 @@ struct FrameNoise {
   std::uint64_t seed = 1;  ///< of noise, holes and the grain of tissue
   double depth_noise_mm = 0.2;  ///< standard deviation
   double depth_scale = 1.0;   ///< measured over true distance
-  double hole_percent = 3.0;  ///< share of the specimen without a reading, %
+  double hole_percent = 3.0;  ///< share of the specimen without a reading, %, [0, 100]
 };
 
 /// Renders the stretched specimen as the camera sees it, with the tumour's edge marked in green and with the depth's
 /// noise, scale and holes.
 /// @param T_camera_specimen  rigid, mm.
+/// @throws InvalidArgument if hole_percent is out of range, or the tumour's edge has no points.
 [[nodiscard]] FrameShot shoot_frame(const SeenTissue& tissue, const FrameNoise& noise, const Mat4& T_camera_specimen);
 
 /// Returns the specimen's part of the depth picture as points, camera frame, mm: every third pixel of every third row,

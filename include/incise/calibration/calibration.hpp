@@ -10,6 +10,7 @@
 #include <incise/core/verdict.hpp>
 #include <incise/cutting/cut_settings.hpp>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>

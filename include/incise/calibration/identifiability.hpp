@@ -4,6 +4,7 @@
 #include <incise/core/names.hpp>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -29,7 +29,7 @@ inline void describe(Visitor& v, RingCovariates& r) {
   v({"radius_mm", "Of the circle with the area inside the tumour edge.", "mm"}, r.radius_mm, kAnatomyMm);
   v("outline", r.outline, "Length of the tumour edge over that circle's.", {1.0, 100.0});
   v("along", r.along, "Where the edge's middle lies along the pull, from end to end of the body.", {0.0, 1.0});
-  v({"aside_mm", "How far across the pull it lies from the body's middle, positive to the left in the view.", "mm"},
+  v({"aside_mm", "How far across the pull it lies from the body's middle, positive to the left of the pull.", "mm"},
     r.aside_mm, {-kAnatomyMm.most, kAnatomyMm.most});
   v({"youngs_modulus_kpa", "By the pull, where it was measured.", "kPa"}, r.youngs_modulus_kpa,
     {kLeastYoungsModulusKpa, kMostYoungsModulusKpa});

@@ -107,7 +107,8 @@ class RingForecaster {
   RingForecaster(RingForecaster&&) noexcept;
 
   /// Forecasts a ring that has not been simulated.
-  /// @param sectors  of the forecast's lists, at least 9; not read if there are observations, whose number is used.
+  /// @param sectors  of the forecast's lists, at least 9 (InvalidArgument); not read if there are observations, whose
+  /// number is used.
   [[nodiscard]] RingForecast forecast(const RingCovariates& ring, std::size_t sectors = 36) const;
   /// Predicts how the photograph of this ring will differ from a simulated cut along the planned path.
   /// @param simulated_mm   signed errors of that cut by sector, 9 or more, the calibration's bias added; empty:

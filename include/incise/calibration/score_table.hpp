@@ -46,7 +46,8 @@ struct ScoreTable {
 /// paper, `percent` measures simulated mid-lines against margin less radius and compares them with photographed inner
 /// edges. `inner_percent` compares inner edges with inner edges, of those specimens alone that have both.
 /// @param runs  by specimen: the n-th of each specimen belongs to the n-th row.  @param photographs  by specimen.
-/// @throws InvalidArgument for empty lists, lists of different lengths, or a baseline that is not above 0.
+/// @throws InvalidArgument for empty lists, lists of different lengths, a baseline that is not above 0, or a run that
+/// is no failure and has no errors.
 [[nodiscard]] ScoreTable score_table(const std::vector<std::vector<CalibrationRun>>& runs,
                                      std::span<const PhotographedErrors> photographs);
 

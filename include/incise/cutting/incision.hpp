@@ -58,7 +58,7 @@ struct IncisionResult {
   KerfMeasures kerf;                  ///< body, layers, depth, drag and deep margin
   CutRecord record;
   CutState final_state;  ///< tool out, tissue still stretched
-  std::vector<CutFrame> frames;  ///< on the split mesh of final_state
+  std::vector<CutFrame> frames;  ///< on the split mesh of final_state; the last one shows that state
   std::vector<CutStepLog> steps;
   std::size_t solver_iterations = 0;   ///< sum over all steps
   bool is_at_rest = false;             ///< the tool is out, and the last step was solved and moved each vertex by less
@@ -113,8 +113,8 @@ inline void describe(Visitor& v, IncisionResult& r) {
 /// @param progress  of this model, stretched tissue, path and settings: from begin_incision, or passed to `keep`.
 /// @param keep      receives the progress at each renewal step. With it, a cancelled incision stops at the next renewal
 ///                  step (at most 20 steps later), so no computed step is lost; without it, at once.
-/// @throws InvalidArgument as begin_incision; if the progress is of another mesh; for a tumour edge more than 0.5 mm
-///         off the tissue; for a tumour surface that encloses no volume.
+/// @throws InvalidArgument, before it cuts, as begin_incision; if the progress is of another mesh; for a tumour edge
+///         more than 0.5 mm off the tissue; for a tumour surface that encloses no volume.
 [[nodiscard]] IncisionResult continue_incision(const TissueModel& model, const TissueState& stretched,
                                                const ToolPath& path, const IncisionSettings& settings,
                                                IncisionProgress progress, Workers& workers, Monitor& monitor,

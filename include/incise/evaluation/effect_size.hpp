@@ -47,7 +47,7 @@ enum class TestDesign {
 [[nodiscard]] double t_test_power(double effect, std::size_t n, TestDesign design, double alpha = 0.05);
 
 /// Returns the fewest specimens in each group (or pairs) for which t_test_power reaches `power`. Absent for an effect
-/// of 0, and if more than 2^19 (524 288) would be needed. @pre power in (alpha, 1) (InvalidArgument).
+/// of 0, and if more than 1 000 000 would be needed. @pre power in (alpha, 1) (InvalidArgument).
 [[nodiscard]] std::optional<std::size_t> fewest_specimens(double effect, TestDesign design, double power = 0.8,
                                                           double alpha = 0.05);
 

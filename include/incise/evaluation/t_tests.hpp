@@ -89,7 +89,7 @@ inline void describe(Visitor& v, TTest& t) {
 
 /// Returns the fewest values in each of two samples of equal size for which student_t_test finds p < `alpha` for these
 /// means and standard deviations: the n that a published "p < 0.001" implies. `n` of the samples is not used. Absent if
-/// the means are equal, without spread, and if more than 2^23 (about 8.4 million) values would be needed.
+/// the means are equal, without spread, and if more than 10 000 000 values would be needed.
 /// @pre alpha in (0, 1) (InvalidArgument).
 [[nodiscard]] std::optional<std::size_t> fewest_for_significance(const SampleMoments& before,
                                                                  const SampleMoments& after, double alpha);

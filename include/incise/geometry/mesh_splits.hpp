@@ -27,7 +27,7 @@ inline void describe(Visitor& v, SplitTet& t) {
 struct MeshSplits {
   std::vector<VertexId> vertices;  ///< per copied vertex: its original, with a lower number; may be a copy itself
   std::vector<SplitTet> copies;    ///< per copied tet
-  std::vector<SplitTet> changed;   ///< tets of the whole mesh with other corners or a smaller share, ascending
+  std::vector<SplitTet> changed;   ///< tets of the whole mesh with copies, other corners or a smaller share, ascending
   [[nodiscard]] bool operator==(const MeshSplits&) const = default;
 };
 inline void describe(Visitor& v, MeshSplits& s) {
@@ -37,7 +37,8 @@ inline void describe(Visitor& v, MeshSplits& s) {
 }
 
 /// Checks that splits belong to a mesh. @throws InvalidArgument for numbers out of range, corners that are not the
-/// tet's own or copies of them, shares that do not add up to 1, and changed tets that are not ascending.
+/// tet's own or copies of them, shares that do not add up to 1, changed tets that are not ascending, and copies of a
+/// tet that is not among them.
 void require_splits_of(const TetMesh& whole, const MeshSplits& splits);
 
 /// Returns the split mesh; a copy has its original's position and data.

@@ -72,6 +72,7 @@ struct LiftedLine {
 [[nodiscard]] std::optional<Vec3> position_at(const OrganizedCloud& cloud, const Vec2& pixel, int window_px);
 /// Lifts a line of at least 2 pixels into space; interpolates linearly across holes in the depth.
 /// @param name  file name for messages.
+/// @throws InvalidArgument for fewer than 2 pixels, or settings out of range.
 /// @throws DataError, with size and pixel, if a hole is larger than allowed or lies at an end of an open line.
 [[nodiscard]] LiftedLine lift_to_space(const std::vector<Vec2>& points_px, bool is_closed, const OrganizedCloud& cloud,
                                        const LiftSettings& settings, const std::filesystem::path& name);

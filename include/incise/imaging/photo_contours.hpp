@@ -60,6 +60,7 @@ struct PhotoContours {
 /// the other, the hidden part of the lower one is bridged (up to 8 mm). An open red ring is a valid result; an open
 /// green ring is an error.
 /// @param name  file name for messages.
+/// @throws InvalidArgument if max_gap_mm is negative or not finite.
 /// @throws DataError for: no red or no green line; two tumours; a line that leaves the picture, crosses itself or has a
 /// loop (with its place); much other ink beside a ring; a green mark of kSmallestTumorMm or more beside the green ring,
 /// or a red mark of 3 mm or more inside it; a tumour edge that is open (with the width of the opening); or one less

@@ -141,8 +141,7 @@ inline void describe(Visitor& v, Segmentation& s) {
 
 /// Finds the specimen in a label volume; see `segment` and tissue_labels(). The occupancy is 0 or 1 before smoothing,
 /// so the voxel size limits the accuracy of the skin. The window is not used, and the HU are not checked.
-/// @throws as `segment`, but names only the first violation of the settings; also CaseError if no voxel of the region
-/// is tissue, or a seed lies where none is.
+/// @throws as `segment`; also CaseError if no voxel of the region is tissue, or a seed lies where none is.
 [[nodiscard]] Segmentation segment_labels(const LabelVolume& labels, const SegmentationSettings& settings,
                                           Workers& workers, Monitor& monitor);
 

@@ -19,7 +19,7 @@ namespace incise {
 /// Settings of an experiment on a virtual bench.
 struct ExperimentSettings {
   int bench = 1;  ///< virtual laboratory, 1 or 2; specimens of the second form one series, whose number is the seed
-  std::uint64_t specimens = 4;  ///< even: half for calibration, half for the test
+  std::uint64_t specimens = 4;  ///< even, above 0: half for calibration, half for the test
   /// Additional specimens, unlike the others. Absent: one on the first bench with four specimens, else none.
   std::optional<std::uint64_t> outside;
   std::filesystem::path truth;       ///< empty: truth/ in the output

@@ -87,7 +87,7 @@ class SparseCholesky {
   explicit SparseCholesky(std::shared_ptr<const BlockPattern> pattern);
   ~SparseCholesky();
   /// Factors the matrix; reads its upper triangle only. Returns false if it is not positive definite.
-  /// @throws InvalidArgument for another pattern, or if memory runs out.
+  /// @throws InvalidArgument for another pattern, if memory runs out, or if CHOLMOD fails for another reason.
   [[nodiscard]] bool factor(const BlockMatrix& matrix);
   /// Solves A x = b with the last factor; b and x are N x 3.
   /// @throws InvalidArgument unless factor() succeeded, and for vectors of the wrong size.

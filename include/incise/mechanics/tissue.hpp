@@ -133,7 +133,8 @@ enum class Tangent {
 /// Adds the elastic forces (minus the energy gradient) of the live tets at state.positions to `forces` (N x 3, mN), and
 /// the tangent −∂f/∂x to `stiffness` unless it is null. Updates state.rotations. For viscous tissue this is the
 /// long-time response. Finite for inverted and collapsed tets. Sums have a fixed order: same bits at any thread count.
-/// @pre `stiffness` is symmetric and has model.pattern.  @throws InvalidArgument for arrays of the wrong size.
+/// @pre `stiffness` is symmetric.  @throws InvalidArgument for arrays of the wrong size, or a matrix of another pattern
+/// object than model.pattern.
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
                           Tangent tangent, Workers& workers);
 /// The same with the tangent of frozen rotations.
@@ -143,7 +144,8 @@ void add_elastic_response(const TissueModel& model, TissueState& state, std::spa
 /// Adds viscous forces to `forces` (N x 3, mN), and their tangent to `stiffness` unless it is null: those at the end of
 /// a step of `step_s` (> 0) that began with state.memory and ends at state.positions. They are minus the gradient of
 /// viscous_potential_uj. Does nothing without viscosity. @throws InvalidArgument for step_s <= 0, arrays of the wrong
-/// size, or a memory that does not fit the model (rest_state provides one).
+/// size, a matrix of another pattern object than model.pattern, or a memory that does not fit the model (rest_state
+/// provides one).
 void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
                           BlockMatrix* stiffness, Tangent tangent, Workers& workers);
 /// The same with the tangent of frozen rotations (projected).
@@ -165,7 +167,8 @@ void remember_deformation(const TissueModel& model, TissueState& state, double s
 
 /// Adds the push of the supports (they never pull) to `forces` (N x 3, mN), and its tangent k n nᵀ to `stiffness`
 /// unless it is null. The tangent is exact on a plane and on flat parts of a holder; where the nearest point lies on an
-/// edge or a corner, it omits the rotation of the normal. @throws InvalidArgument for forces of the wrong size.
+/// edge or a corner, it omits the rotation of the normal. @throws InvalidArgument for forces of the wrong size, or a
+/// matrix of another pattern object than model.pattern.
 void add_support_response(const TissueModel& model, const TissueState& state, std::span<Vec3> forces,
                           BlockMatrix* stiffness);
 

@@ -83,7 +83,7 @@ struct PoseObservability {
   Eigen::Matrix<double, 7, 7> covariance =
       Eigen::Matrix<double, 7, 7>::Zero();  ///< rotation vector (rad), translation (mm), log scale; about `center_mm`
   Vec3 center_mm = Vec3::Zero();            ///< centroid of the overlap, target frame
-  std::string weakest;                      ///< the least determined motion, in words for a person
+  std::string weakest;                      ///< the motion of `weakest_sd_mm`, in words for a person
 };
 inline void describe(Visitor& v, PoseObservability& c) {
   v("motions", c.motions, "7, or 6 with the scale fixed.");
@@ -92,8 +92,8 @@ inline void describe(Visitor& v, PoseObservability& c) {
   v.derived("visible", visible, "Share of each motion that appears in the distances, ascending.");
   v.derived("sharpness", std::vector{if_finite(c.sharpness[0]), if_finite(c.sharpness[1])},
             "Of the two least visible ones, from moving the source to and fro.");
-  v("weakest_motion", c.weakest, "What kind of motion is least visible.");
-  v.derived("weakest_sd_mm", if_finite(c.weakest_sd_mm), "Along the least visible motion.");
+  v("weakest_motion", c.weakest, "What kind of motion is least determined.");
+  v.derived("weakest_sd_mm", if_finite(c.weakest_sd_mm), "Along the least determined motion.");
   v.derived("sd_mm", if_finite(c.sd_mm), "Of the overlap's position from noise, all motions together (rms).");
   v.derived("rotation_sd_deg", if_finite(c.rotation_sd_deg), "Of the rotation.");
   v.derived("translation_sd_mm", if_finite(c.translation_sd_mm), "Of the overlap's middle.");

@@ -24,7 +24,7 @@ struct ScoreGrid {
 /// downwards, dullness to the right. Failed cells are hatched, the others show their number, and a frame marks the
 /// chosen cell.
 /// @returns a complete SVG document. @throws InvalidArgument unless there is a cell for each pair of speed and
-/// dullness, `chosen` is one of them, and all scores and errors are finite.
+/// dullness, `chosen` is one of them, and all speeds, values of dullness, scores and errors are finite.
 [[nodiscard]] std::string score_heat_map_svg(const ScoreGrid& grid);
 
 /// One specimen's signed error in evenly spaced directions from the middle of the tumour edge, counter-clockwise from

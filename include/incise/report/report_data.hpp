@@ -200,7 +200,7 @@ struct ReportData {
 [[nodiscard]] std::vector<ReportIncision> drawn_incisions(const ReportData& data);
 
 /// Returns every problem that keeps `data` from being reported, in words: numbers that are not finite, indices out of
-/// range, lists of unequal length, a zero direction. Plots are not checked here, but when they are drawn.
+/// range, lists of unequal length, a zero direction, plots that cannot be drawn.
 [[nodiscard]] std::vector<std::string> find_problems(const ReportData& data);
 
 }  // namespace incise

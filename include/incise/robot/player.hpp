@@ -135,8 +135,8 @@ void describe(Visitor& v, Replay& r);
 /// of them in the order of ReplayOutcome. `play` does not check the digest or the header's statements; see judge_audit.
 /// @param intended  the path that the tip should follow, frame robot; by default the path in the program's header.
 ///   Without either, deviations are 0 and `intended_mm` is empty.
-/// @throws InvalidArgument for settings out of range, or a program with fewer than 2 commands and fewer than 2 rows of
-/// joints.
+/// @throws InvalidArgument for settings out of range, or unless the program has at least 2 rows of joints or, without
+/// joints, at least 2 commands.
 [[nodiscard]] Replay play(const WrittenProgram& program, const ArmModel& arm = ur10e(),
                           const PlayerSettings& settings = {}, const ToolPath* intended = nullptr);
 

@@ -154,7 +154,7 @@ inline void describe(Visitor& v, CompensationChoice& m) {
   v({"residual_mm",
      "Expected error of the real cut beyond that share, by direction from the middle of the tumour edge, positive: "
      "farther out; default method only. A list of one number, or of one for each of up to 360 sectors of equal angle, "
-     "the first about plan.start_direction, then counter-clockwise against the approach. Empty: none.",
+     "the first about plan.start_direction, then counter-clockwise as seen along the approach. Empty: none.",
      "mm"},
     m.residual_mm, {-10.0, 10.0});
   v({"photographed_mm",
