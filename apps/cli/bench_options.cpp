@@ -24,7 +24,7 @@ void add_factors(CLI::App& verb, const std::string& meaning, const std::function
           "--factors",
           [take](const std::vector<std::string>& given) {
             if (given.size() > 1 && std::find(given.begin(), given.end(), "none") != given.end())
-              throw CaseError("command line", "--factors", "none beside others", "none, or names of factors");
+              throw CaseError("command line", "--factors", "none and other names", "none alone, or names of factors");
             second_bench::Factors factors;
             for (const std::string& name : given)
               if (name != "none") factors.insert(*value_of<second_bench::Factor>(name));
@@ -39,8 +39,8 @@ void add_overrides(CLI::App& verb, std::vector<std::string>& overrides) {
   std::vector<std::string> checks;
   std::ranges::copy_if(check_names(), std::back_inserter(checks), can_be_overridden);
   verb.add_option("--override", overrides,
-                  "Cut although this check of the program fails, as `incise export` would: the tissue is virtual. "
-                  "Repeat for each check")
+                  "Cut even if this check of the program fails, as with `incise export`: the tissue is virtual. Repeat "
+                  "for each check")
       ->expected(1)
       ->take_all()
       ->check(CLI::IsMember(checks));
@@ -56,7 +56,7 @@ nlohmann::ordered_json run_in_folder(
     Workers workers(options.threads);
     return work(root, options.context(), workers, console);
   } catch (const Cancelled& error) {
-    throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", root.string()));
+    throw StagesKept(error.what(), fmt::format("finished results are kept in {}", root.string()));
   }
 }
 

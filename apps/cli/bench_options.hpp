@@ -8,8 +8,8 @@ namespace incise::cli {
 
 /// Meaning of `--factors` for verbs that draw their specimens, unless a verb says otherwise.
 inline constexpr const char* kVaries =
-    "Of laboratory 2: what varies beside placement, stretch and stiffness; the rest has the defaults of `incise schema "
-    "bench2`. By default everything; none: nothing more";
+    "Factors of laboratory 2 that vary, besides placement, stretch and stiffness; all others keep the defaults of "
+    "`incise schema bench2`. By default all vary; none: no other factor varies";
 
 /// Adds `--factors`: none, or names of factors of laboratory 2.
 void add_factors(CLI::App& verb, const std::string& meaning, const std::function<void(second_bench::Factors)>& take);

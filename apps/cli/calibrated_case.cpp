@@ -6,8 +6,8 @@ namespace incise::cli {
 
 CLI::Option* add_calibrated_options(CLI::App& verb, steps::CalibratedRequest& options) {
   verb.add_option("--stretch-force-n", options.stretch_force_n,
-                  "Measured pull of this specimen at its stretch: determines its stiffness to 5 %. Without it the "
-                  "case's modulus is used, with much more uncertainty")
+                  "Pull measured on this specimen when stretched; it determines the stiffness to 5 %. Without it, the "
+                  "case's modulus is used, with much greater uncertainty")
       ->check(above_zero("--stretch-force-n"));
   return verb.add_option("--calibration", options.calibration, "calibration.json of `incise calibrate` (method fit)");
 }

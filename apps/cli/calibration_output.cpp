@@ -8,7 +8,7 @@ namespace incise::cli {
 namespace {
 
 std::string score_in_words(const Calibration& calibration) {
-  if (!calibration.score_percent) return "no inner edge there to score";
+  if (!calibration.score_percent) return "no inner edge to score";
   const std::string score = fmt::format("{:.1f} % of the baseline", *calibration.score_percent);
   if (!calibration.fit) return score;
   return fmt::format("{} (inner edges of {} of {} specimens)", score,
@@ -44,7 +44,7 @@ void print_calibration(const Calibration& calibration, const std::filesystem::pa
     fmt::print("\nchosen: {:.3g} mm/s x {:.3g}, {}\n", calibration.chosen->speed_mm_s, calibration.chosen->dullness,
                score_in_words(calibration));
   }
-  fmt::print("everything: {}\n", (folder / "calibration.json").string());
+  fmt::print("all results: {}\n", (folder / "calibration.json").string());
 }
 
 }  // namespace incise::cli

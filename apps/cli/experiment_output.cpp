@@ -36,7 +36,8 @@ void print_paths(const char* of, const nlohmann::ordered_json& result) {
   }
   if (best.is_null())
     fmt::print(
-        "no specimen was closed along two paths without a simulated cut: no benefit of simulation can be claimed\n");
+        "no specimen has a closed ring along two paths without a simulated cut: no benefit of simulation can be "
+        "claimed\n");
 }
 
 /// Prints the errors by number of photographs, without and with simulation. @param curve  empty: prints nothing.
@@ -61,11 +62,11 @@ void print_learning(const nlohmann::ordered_json& curve) {
 void print_advice(const nlohmann::ordered_json& advice) {
   if (!advice.is_object()) return;
   print_area("advice: area under the curve", advice.at("auc"));
-  print_area("  of those outside alone", advice.at("auc_outside_alone"));
+  print_area("  for outside specimens only", advice.at("auc_outside_alone"));
   print_area("the same without the pull", advice.at("auc_without_pull"));
   for (const auto& interval : advice.at("intervals"))
     fmt::print("{:<34} {:.2f} ({:.2f} to {:.2f}), {} cuts\n",
-               fmt::format("{:.0f} % interval, {}: holds", 100.0 * interval.at("level").get<double>(),
+               fmt::format("{:.0f} % interval, {}: covers", 100.0 * interval.at("level").get<double>(),
                            interval.at("of").get<std::string>()),
                interval.at("share").get<double>(), interval.at("low").get<double>(), interval.at("high").get<double>(),
                interval.at("cuts").get<std::size_t>());
@@ -92,12 +93,12 @@ void print_experiment(const nlohmann::ordered_json& result) {
   fmt::print("VIRTUAL specimens, mean |error| of the photographs\n");
   print_gain("as planned -> corrected", result);
   if (result.at("uncorrected").get<std::size_t>() > 0 && result.at("pairs").get<std::size_t>() > 0) {
-    fmt::print("{:<34} {:.0f} % less; {} cut as planned alone\n", "  of all that were cut",
+    fmt::print("{:<34} {:.0f} % less; {} cut only as planned\n", "  of all that were cut",
                result.at("gain_percent_of_all").get<double>(), result.at("uncorrected").get<std::size_t>());
   }
   print_paths("path", result);
   if (result.contains("unlike") && result.at("unlike").at("rivals").at("as_planned").at("pairs").get<std::size_t>() > 0)
-    print_paths("of these, unlike the calibration's", result.at("unlike"));
+    print_paths("specimens unlike the calibration's", result.at("unlike"));
   if (result.contains("known_physics") && result.at("known_physics").at("mean_after_mm").is_number()) {
     fmt::print("{:<34} {:.2f} mm ({} specimens, from the truth)\n", "physics known",
                result.at("known_physics").at("mean_after_mm").get<double>(),
@@ -120,8 +121,8 @@ void print_experiment(const nlohmann::ordered_json& result) {
 void print_pooled(const nlohmann::ordered_json& result) {
   fmt::print("VIRTUAL specimens of {} series, mean |error| of the photographs\n", result.at("series").size());
   print_paths("path", result);
-  print_paths("of these, unlike the calibration's", result.at("unlike"));
-  print_paths("of these, like the calibration's", result.at("like"));
+  print_paths("specimens unlike the calibration's", result.at("unlike"));
+  print_paths("specimens like the calibration's", result.at("like"));
   const auto& robust = result.at("robust_against_default");
   if (robust.at("difference_mm").is_number()) {
     std::string interval;
@@ -135,7 +136,7 @@ void print_pooled(const nlohmann::ordered_json& result) {
   }
   print_learning(result.at("learning"));
   if (const auto& advice = result.at("advice"); advice.is_object() && advice.at("intervals_by") == "specimens")
-    fmt::print("advice; its intervals treat specimens as independent, which those of a series are not\n");
+    fmt::print("advice (its intervals treat specimens as independent, but those of one series are not)\n");
   print_advice(result.at("advice"));
 }
 

@@ -57,7 +57,7 @@ void refuse_numbers_that_are_not_finite(int argc, char** argv) {
     char* end = nullptr;
     const double value = std::strtod(word.c_str(), &end);
     if (end != word.c_str() && *end == '\0' && !std::isfinite(value)) {
-      throw CaseError("command line", name, word, "a finite number", "A file of that name can be given as ./" + word);
+      throw CaseError("command line", name, word, "a finite number", "For a file of that name, write ./" + word);
     }
   }
 }
@@ -164,11 +164,12 @@ int main(int argc, char** argv) {
     say(fmt::format("incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message()));
     return kBadData;
   } catch (const std::system_error& error) {  // from fmt, if standard output accepts no more
-    say(fmt::format("incise: standard output: found {}, expected one that accepts all that is printed\n",
+    say(fmt::format("incise: standard output: found {}, expected a stream that accepts all output\n",
                     error.code().message()));
     return kBadData;
   } catch (const nlohmann::json::exception& error) {
-    say(fmt::format("incise: a JSON file that was read: found {}, expected what incise writes\n", error.what()));
+    say(fmt::format("incise: a JSON file that was read: found {}, expected content as incise writes it\n",
+                    error.what()));
     return kBadData;
   } catch (const std::bad_alloc&) {
     say("incise: out of memory\n");

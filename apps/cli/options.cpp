@@ -43,11 +43,11 @@ void refuse_input_as_output(const std::string& option, const std::filesystem::pa
       throw CaseError("command line", option, output.string() + what, expected);
     };
     if (std::filesystem::equivalent(input, output, absent))
-      refuse(", an input", "another file: the input would be lost");
+      refuse(", which is an input", "another file: the input would be lost");
     if (is_same_or_within(input, output))
       refuse(fmt::format(", which holds the input {}", input.string()), "another place: the input would be lost");
     if (std::filesystem::is_directory(input, absent) && is_same_or_within(output, input))
-      refuse(fmt::format(", in the input {}", input.string()),
+      refuse(fmt::format(", which is inside the input {}", input.string()),
              "another place: the input would be changed");
   }
 }
@@ -65,7 +65,7 @@ void refuse_same_output(const std::string& option, const std::filesystem::path& 
   if (output.empty() || other.empty()) return;
   if (!is_same_or_within(output, other) && !is_same_or_within(other, output)) return;
   throw CaseError("command line", other_option, other.string(),
-                  fmt::format("another file than that of {} {}: one would replace the other", option, output.string()));
+                  fmt::format("a file other than {} {}: one output would replace the other", option, output.string()));
 }
 
 OlderOutput::OlderOutput(std::filesystem::path output, Console& console)
@@ -78,7 +78,7 @@ OlderOutput::OlderOutput(std::filesystem::path output, Console& console)
 OlderOutput::~OlderOutput() {
   if (!is_there_) return;
   try {
-    console_.message(Severity::Warning, fmt::format("{} is of an earlier run and was left as it is", output_.string()));
+    console_.message(Severity::Warning, fmt::format("{} is from an earlier run and was not changed", output_.string()));
   } catch (...) {  // a message that cannot be shown does not end the program
   }
 }
@@ -112,9 +112,9 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   CLI::App* verb = group.add_subcommand(name, what);
   verb->footer("\nExample:\n  " + example + "\n");
   const CLI::Option* given = verb->add_option("-o,--output", options->output, "File or folder to write");
-  verb->add_flag("--json", options->json, "One JSON object on standard output");
-  verb->add_flag("--quiet", options->quiet, "Warnings only");
-  verb->add_flag("--verbose", options->verbose, "More detail");
+  verb->add_flag("--json", options->json, "Print one JSON object on standard output");
+  verb->add_flag("--quiet", options->quiet, "Print warnings only");
+  verb->add_flag("--verbose", options->verbose, "Print more detail");
   verb->add_option("--threads", options->threads, "Threads to use; 0: all")->check(whole_between("--threads", 0, 1024));
   verb->add_option("--seed", options->seed, "Seed of all random numbers")
       ->check(whole_between("--seed", 0, kGreatestSeed));

@@ -28,7 +28,7 @@ std::string words_of(const CLI::App& verb) {
 }
 
 std::string hint_for(const CLI::App& verb) {
-  return fmt::format("`{} --help` explains it", words_of(verb));
+  return fmt::format("See `{} --help`", words_of(verb));
 }
 
 /// Returns the option that a message of CLI11 is about ("--frames: …", "Could not convert: --frames = …", "case is
@@ -104,7 +104,7 @@ CaseError not_understood(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options()) {
     if (option->get_name().starts_with('-')) names.push_back(option->get_name());
   }
-  return {kCommandLine, words_of(verb), quoted(first), "an option that it has",
+  return {kCommandLine, words_of(verb), quoted(first), "one of its options",
           fmt::format("Did you mean '{}'? {}", nearest_name(first, names), hint_for(verb))};
 }
 

@@ -29,7 +29,7 @@ void print_power(const laboratory::PowerResult& result, const std::filesystem::p
                mm_or_dash(cut.bulge_mm), mm_or_dash(cut.thermal_width_mm), mm_or_dash(cut.mean_abs_error_mm),
                to_string(cut.outcome));
   }
-  fmt::print("everything: {}\n", (folder / "power.json").string());
+  fmt::print("all results: {}\n", (folder / "power.json").string());
 }
 
 void print_speed(const SpeedEstimate& speed) {

@@ -26,7 +26,8 @@ void prepare_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (is_closed(stream)) static_cast<void>(::open("/dev/null", O_RDWR));  // takes the lowest free number: this one
   }
-  if (!has_output) throw DataError("standard output", "", "a closed stream", "one that can be written", "Use >/dev/null to print nothing");
+  if (!has_output)
+    throw DataError("standard output", "", "a closed stream", "an open stream", "Use >/dev/null to print nothing");
 }
 
 void finish_standard_output() {
@@ -35,8 +36,7 @@ void finish_standard_output() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return;
   if (errno == 0 && ::write(STDOUT_FILENO, "\n", 1) == 1) errno = 0;  // it failed earlier: writes again to learn why
   throw DataError("standard output", "", errno != 0 ? std::strerror(errno) : "a failed write",
-                  "one that accepts all that is printed",
-                  "Files that were named as output are complete");
+                  "a stream that accepts all output", "Output files are complete");
 }
 
 }  // namespace incise::cli

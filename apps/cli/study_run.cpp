@@ -17,11 +17,11 @@ std::filesystem::path output_of(const std::filesystem::path& case_path, const Co
 
 void add_cut_options(CLI::App& verb, CutOptions& options) {
   verb.add_option("--frames", options.frames,
-                  "Moments of the cut to keep for pictures, in place of the case's cut.frames")
+                  "Number of moments of the cut to keep for pictures; overrides the case's cut.frames")
       ->check(whole_between("--frames", 1, kMostFrames));
   verb.add_flag("--resume", options.must_resume,
-                "Continue from the checkpoint of an interrupted cut, or refuse. Without --resume it continues "
-                "if its checkpoint fits, and else starts again");
+                "Continue from the checkpoint of an interrupted cut, or refuse. Without --resume, the cut continues if "
+                "its checkpoint fits and otherwise starts again");
   verb.add_option("--checkpoint-s", options.checkpoint_s, "Seconds between two checkpoints of a cut; Ctrl-C always writes one")
       ->check(CLI::Range(0.0, kLongestCheckpointS));
 }

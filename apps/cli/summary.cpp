@@ -105,7 +105,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
   for (const char* key : {"outcome", "accepted", "specimen_is", "report", "wall_s"}) {
     if (const auto value = result.find(key); value != result.end() && !value->is_structured()) fmt::print("{:<36} {}\n", key, shown(*value));
   }
-  fmt::print("every figure: --json, or incision.json in the folder of each cut\n");
+  fmt::print("all numbers: --json, or incision.json in the folder of each cut\n");
 }
 
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result) {

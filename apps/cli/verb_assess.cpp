@@ -19,13 +19,13 @@ void print_assessment(const nlohmann::ordered_json& result) {
     for (const auto& line : result.at(key))
       fmt::print("  {}{}\n", key == std::string("notes") ? "note: " : "", line.get<std::string>());
   for (const auto& d : result.at("distances"))
-    fmt::print("{:<36} {:>10.4g}   {:+.2f} sd from the calibration's {:.4g}\n", d.at("name").get<std::string>(),
+    fmt::print("{:<36} {:>10.4g}   {:+.2f} sd from the calibration's mean {:.4g}\n", d.at("name").get<std::string>(),
                d.at("value").get<double>(), d.at("in_sd").get<double>(), d.at("calibrated_mean").get<double>());
   for (const char* path : {"intended", "corrected"}) {
     const auto& risk = result.at(path);
     if (!risk.is_object() || risk.at("p_close_margin").is_null()) continue;
     const auto& middle = risk.at("abs_error_80_mm");
-    fmt::print("{:<36} {:>10.3f} mm expected ({:.2f} to {:.2f} with 80 %), P(close margin) {:.3f}\n", path,
+    fmt::print("{:<36} {:>10.3f} mm expected (80 %: {:.2f} to {:.2f}), P(close margin) {:.3f}\n", path,
                risk.at("expected_abs_error_mm").get<double>(), middle.at(0).get<double>(), middle.at(1).get<double>(),
                risk.at("p_close_margin").get<double>());
   }
@@ -50,12 +50,10 @@ void add_assess(Application& application) {
   auto chosen = std::make_shared<AssessOptions>();
   CLI::App* verb =
       application.add_verb("assess",
-                           "Should this specimen be cut along the corrected path? compensate, cut_as_planned (both "
-                           "exit status 0) or do_not_use (4): what the "
-                           "correction is expected to gain over a calibration's posterior, how certain that is, "
-                           "and how "
-                           "far the specimen lies from those that were "
-                           "calibrated on",
+                           "Advise whether to cut this specimen along the corrected path: compensate, cut_as_planned "
+                           "(both exit status 0) or do_not_use (4). States the expected gain of the correction over a "
+                           "calibration's posterior, its uncertainty, and how far the specimen lies from those of the "
+                           "calibration",
                            "incise assess specimen --calibration calibration/calibration.json --registration "
                            "registration/registration.json -o out",
                            [chosen](const CommonOptions& options) { return assess_case(*chosen, options); });

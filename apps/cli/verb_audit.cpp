@@ -38,7 +38,8 @@ Json audit_json(const Audit& audit, const PublishedTable& table) {
 void print_audit(const Audit& audit, const PublishedTable& table) {
   // A rule whose column was not recognised finds nothing, which does not mean that there is nothing to find.
   fmt::print("columns read: {}\n", fmt::join(table.number_columns, ", "));
-  if (!table.name_columns.empty()) fmt::print("names, not numbers: {}\n", fmt::join(table.name_columns, ", "));
+  if (!table.name_columns.empty())
+    fmt::print("columns of names, not numbers: {}\n", fmt::join(table.name_columns, ", "));
   for (const AuditedRow& row : audit.rows) {
     for (const Finding& finding : row.findings) fmt::print("{:<32} {}\n", row.name, to_text(finding));
   }
@@ -78,8 +79,8 @@ void add_audit(Application& application) {
       "audit", "Find the rows of a published table that no data can produce; exit status 4 if there are any",
       "incise audit data/published_tables/table_1.csv", run);
   verb->add_option("table", a.table,
-                   "Digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, score_percent, and "
-                   "PART_mean_mm, PART_sd_mm, PART_n of what a row was pooled from")
+                   "Table with the digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, "
+                   "score_percent, and PART_mean_mm, PART_sd_mm, PART_n of each part that a row pools")
       ->required();
   add_options_of(*verb, a.settings, "least", "n_at_least");
   verb->add_option("--grain", a.grain, "Values are whole multiples of this (1 for counts); 0: any number")

@@ -50,16 +50,16 @@ void add_bench(Application& application) {
       [made](const CommonOptions& options) { return make(options, *made); });
   verb->add_option("specimen", made->specimen,
                    "Specimen file (incise schema bench, or bench2); without it one is drawn from the seed");
-  verb->add_option("--bench", made->bench,
-                   "1, or 2: the laboratory that varies far more. A specimen file says it itself")
+  verb->add_option("--bench", made->bench, "Laboratory: 1, or 2, which varies far more. A specimen file states its own")
       ->check(whole_between("--bench", 1, 2));
   add_factors(*verb, kVaries, [made](second_bench::Factors factors) { made->factors = std::move(factors); });
   verb->add_option("--series", made->series,
-                   "Of laboratory 2: specimens of one series share the hand-eye error; by default the seed")
+                   "Series number in laboratory 2: specimens of one series share the hand-eye error; by default the "
+                   "seed")
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--truth", made->truth,
                    "Folder for the hidden truth; it holds the specimen.json that `bench cut` needs");
-  verb->add_flag("--elasticity", made->has_elasticity, "Also a noisy elasticity map");
+  verb->add_flag("--elasticity", made->has_elasticity, "Also make a noisy elasticity map");
 
   auto run = std::make_shared<laboratory::CutSpecimenRequest>();
   verb = application.add_verb_to(*bench, "cut", "Cut a specimen with a robot program and photograph it",
@@ -70,17 +70,17 @@ void add_bench(Application& application) {
       ->required();
   verb->add_option("--power-w", run->power_w, "Power of the electrosurgical generator")->check(CLI::Range(1.0, 120.0));
   verb->add_option("--mm-per-pixel", run->mm_per_pixel, "Scale of the photograph")->check(CLI::Range(0.01, 0.2));
-  verb->add_option("--truth", run->truth, "Folder for what really happened, for tests");
+  verb->add_option("--truth", run->truth, "Folder for the hidden truth of the cut, for tests");
 
   auto floor = std::make_shared<laboratory::KnownPhysicsRequest>();
   verb = application.add_verb_to(
-      *bench, "floor", "Find the error left to a planner that knows the bench's physics, but not the arm's errors",
+      *bench, "floor", "Find the error that remains if the planner knows the bench's physics, but not the arm's errors",
       "incise bench floor hidden7/specimen.json -o floor7.json",
       [floor](const CommonOptions& options) { return floor_of(options, *floor); });
   verb->add_option("specimen", floor->specimen, "The hidden specimen.json")->required();
   verb->add_option("--power-w", floor->power_w, "Power of the electrosurgical generator")
       ->check(CLI::Range(1.0, 120.0));
-  verb->add_option("--simulations", floor->simulations, "Bench cuts by which the path is corrected")
+  verb->add_option("--simulations", floor->simulations, "Number of bench cuts used to correct the path")
       ->check(whole_between("--simulations", 2, 8));
 
   add_bench_series(application, *bench);

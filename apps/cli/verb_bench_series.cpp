@@ -67,7 +67,8 @@ void add_bench_series(Application& application, CLI::App& bench) {
       "planner that it will judge. Run it again to continue where it stopped",
       "incise bench accept --seed 1 -o acceptance",
       [accepted](const CommonOptions& options) { return accept(options, *accepted); });
-  verb->add_option("--specimens", accepted->specimens, "1 to 200; their seeds count up from --seed")
+  verb->add_option("--specimens", accepted->specimens,
+                   "Number of specimens, 1 to 200; their seeds count up from --seed")
       ->check(whole_between("--specimens", 1, 200));
   add_factors(*verb, kVaries, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
   verb->add_option("--speed-mm-s", accepted->speed_mm_s, "Of every cut; by default as prescribed")
@@ -75,7 +76,7 @@ void add_bench_series(Application& application, CLI::App& bench) {
   verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
       ->check(CLI::Range(1.0, 120.0));
   add_overrides(*verb, accepted->overrides);
-  verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut as planned alone");
+  verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut only as planned");
 
   auto screened = std::make_shared<ScreeningSettings>();
   verb =
@@ -84,24 +85,24 @@ void add_bench_series(Application& application, CLI::App& bench) {
                               "factorial of up to 32 cuts of each specimen. Run it again to continue where it stopped",
                               "incise bench factors --seed 1 -o factors",
                               [screened](const CommonOptions& options) { return screen(options, *screened); });
-  verb->add_option("--specimens", screened->specimens, "1 to 24; their seeds count up from --seed")
+  verb->add_option("--specimens", screened->specimens, "Number of specimens, 1 to 24; their seeds count up from --seed")
       ->check(whole_between("--specimens", 1, 24));
   add_factors(
       *verb,
-      "Of laboratory 2: those to switch; the others stay off. By default all, by 32 cuts of each specimen; up to "
-      "8 need 16, 3 or 4 need 8, two need 4",
+      "Factors of laboratory 2 to switch; the others stay off. By default all, with 32 cuts of each specimen; up to 8 "
+      "factors need 16 cuts, 3 or 4 need 8, two need 4",
       [screened](second_bench::Factors factors) {
         if (factors.size() < 2)
-          throw CaseError("command line", "--factors", fmt::format("{} of them", factors.size()),
-                          "at least two: with one, chance is not known");
+          throw CaseError("command line", "--factors", fmt::format("{} of the factors", factors.size()),
+                          "at least two: with one, the effect of chance is not known");
         screened->factors = std::move(factors);
       });
   add_overrides(*verb, screened->overrides);
 
   auto pooled = std::make_shared<std::vector<std::filesystem::path>>();
   verb = application.add_verb_to(bench, "pool",
-                                 "Take several finished experiments together: every path against the best one without "
-                                 "simulation, and the advice against what happened",
+                                 "Pool several finished experiments: compare every path with the best one without "
+                                 "simulation, and the advice with the outcome",
                                  "incise bench pool series1 series2 -o pooled",
                                  [pooled](const CommonOptions& options) { return pool(options, *pooled); });
   verb->add_option("experiments", *pooled, "Folders of `incise experiment`, two or more")->required()->expected(2, -1);

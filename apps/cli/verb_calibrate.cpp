@@ -30,7 +30,7 @@ void require_different_values(const char* option, std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto twice = std::adjacent_find(values.begin(), values.end());
   if (twice != values.end())
-    throw CaseError("command line", option, fmt::format("{} twice", *twice), "every value once");
+    throw CaseError("command line", option, fmt::format("{} twice", *twice), "each value once");
 }
 
 int calibrate_cases(const CalibrateArguments& arguments, const CommonOptions& options) {
@@ -78,11 +78,11 @@ void add_calibrate(Application& application) {
       ->required();
   verb->add_option("--method", arguments->method, "fit or paper")->check(CLI::IsMember({"fit", "paper"}));
   verb->add_option("--stretch-force-n", arguments->request.forces_n,
-                   "Measured pull of each specimen at its stretch: determines its stiffness to 5 %")
+                   "Pull measured on each specimen when stretched; it determines the stiffness to 5 %")
       ->check(above_zero("--stretch-force-n"));
   verb->add_option("--registration", arguments->request.registrations,
-                   "Files of `incise register`, one for each case: kept, so that `incise assess` can tell how a "
-                   "further specimen compares");
+                   "Files of `incise register`, one for each case; the calibration keeps them, and `incise assess` "
+                   "compares further specimens with them");
   add_options_of(*verb, arguments->request.request, "speeds_mm_s", "dullnesses", "drag_lengths_mm",
                  "second_drag_lengths_mm");
 }

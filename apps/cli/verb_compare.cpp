@@ -23,8 +23,8 @@ void require_different(const steps::CompareRequest& arguments) {
   for (const auto* side : {&arguments.before, &arguments.after}) {
     for (const auto& path : *side) {
       if (!seen.insert(std::filesystem::weakly_canonical(path)).second) {
-        throw CaseError("command line", side == &arguments.before ? "--before" : "--after", path.string() + " again",
-                        "every evaluation once");
+        throw CaseError("command line", side == &arguments.before ? "--before" : "--after", path.string() + " twice",
+                        "each evaluation once");
       }
     }
   }
@@ -47,7 +47,7 @@ void print_tests(const steps::CutComparison& found) {
   for (const steps::LeftOut& one : found.left_out) fmt::print("left out, no incision was found: {}\n", one.name);
   if (found.specimens && found.specimens->fewest)
     fmt::print("\nspecimens in each group (or pairs) that would show this effect: {}\n", *found.specimens->fewest);
-  fmt::print("every figure: --json, or compare.json in the folder that -o names\n");
+  fmt::print("all numbers: --json, or compare.json in the folder that -o names\n");
 }
 
 int run(const CompareArguments& arguments, const CommonOptions& options) {
@@ -84,10 +84,10 @@ void add_compare(Application& application) {
   auto [verb, a] = application.add_verb<CompareArguments>(
       "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison", run);
   verb->add_option("--before", a.before, "Files of `incise evaluate -o`, one for each specimen")->required();
-  verb->add_option("--after", a.after, "The same, after the change")->required();
-  verb->add_option("--measure", a.measure, "Which error")->check(name_of_any<ErrorMeasure>());
+  verb->add_option("--after", a.after, "Files of the same kind for the cuts after the change")->required();
+  verb->add_option("--measure", a.measure, "Error to compare")->check(name_of_any<ErrorMeasure>());
   verb->add_flag("--paired", a.settings.is_paired,
-                 "The n-th file before and the n-th file after are the same specimen");
+                 "The n-th file before and the n-th file after are of the same specimen");
   add_options_of(*verb, a.settings, "alpha", "power", "replicates");
 }
 

@@ -24,11 +24,11 @@ void require_robust_options(const CompensateOptions& chosen) {
   const bool has_calibration = !chosen.calibrated.calibration.empty();
   if (chosen.is_robust && !has_calibration) {
     throw CaseError("command line", "--robust", "no --calibration",
-                    "--calibration C.json, whose posterior the path has to be right for");
+                    "--calibration C.json, whose posterior the robust path must suit");
   }
   if (!chosen.is_robust && (has_calibration || chosen.calibrated.stretch_force_n)) {
     throw CaseError("command line", has_calibration ? "--calibration" : "--stretch-force-n", "no --robust",
-                    "--robust: the other methods do not look at a posterior");
+                    "--robust: the other methods use no posterior");
   }
 }
 
@@ -43,7 +43,7 @@ int shift_without_simulation(const CompensateOptions& chosen, const CommonOption
   }
   for (const auto& [option, is_given] :
        {std::pair{"--resume", chosen.cut.must_resume}, std::pair{"--frames", chosen.cut.frames.has_value()}}) {
-    if (is_given) throw CaseError("command line", option, "--no-verify", "one of the two: no cut is simulated");
+    if (is_given) throw CaseError("command line", option, "--no-verify", "only one of the two: no cut is simulated");
   }
   return run_step(options, [&](const auto& context) { return steps::run_stages(request, context); });
 }
@@ -68,9 +68,8 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
   verb.add_option_function<std::string>(
           "--method", [&options](const std::string& name) { options.method = value_named<CompensationMethod>(name); },
           "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 if there is an "
-          "objection to the nearest one); paper: each waypoint moves once by the error "
-          "simulated there; profile: each waypoint moves once by the case's compensation.photographed_mm. "
-          "Overrides the case's compensation.method")
+          "objection to the best of them); paper: each waypoint moves once by the error simulated there; profile: each "
+          "waypoint moves once by the case's compensation.photographed_mm. Overrides the case's compensation.method")
       ->check(name_of_any<CompensationMethod>());
 }
 
@@ -85,14 +84,14 @@ void add_compensate(Application& application) {
   add_compensation_method(*verb, chosen->cut);
   verb->add_flag("--no-verify", chosen->is_unverified,
                  "Method profile: move the path and stop, without any simulated cut. The path then has the caution "
-                 "not_simulated, or what refuses it before any cut");
+                 "not_simulated, or the refusal that it gets before any cut");
   verb->add_flag(
       "--robust", chosen->is_robust,
       "Also choose the path of least expected error over the calibration's posterior, with a probability of a close "
       "margin anywhere of at most --max-probability: OUT/robust/path.json. Exit status 4 if there is none");
   add_calibrated_options(*verb, chosen->calibrated);
   verb->add_option("--max-probability", chosen->max_probability,
-                   "Greatest probability of less tissue than the close margin anywhere, with --robust")
+                   "Greatest allowed probability of less tissue than the close margin anywhere, with --robust")
       ->check(between("--max-probability", 1e-4, 0.9999));
 }
 

@@ -21,7 +21,7 @@ std::filesystem::path specimen_for(const std::filesystem::path& folder, const Co
     laboratory::make_phantom_case({.output = folder}, {options.context(), one, console});
   } else if (const auto found = read_json(truth).value("seed", std::uint64_t{0}); found != options.seed) {
     throw CaseError("command line", "--seed", fmt::format("{}", options.seed),
-                    fmt::format("{}, the specimen that is in {}", found, folder.string()),
+                    fmt::format("{}, the seed of the specimen in {}", found, folder.string()),
                     "Choose another folder with -o for another specimen");
   }
   return folder;

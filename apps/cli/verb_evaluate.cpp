@@ -24,7 +24,7 @@ void add_scale_options(CLI::App& verb, steps::ScaleRequest& options, std::string
   verb.add_option("--ruler", ruler, "Find the scale in the photograph: a ruler's ticks, or a solid scale bar")
       ->check(name_of_any<RulerKind>());
   verb.add_option("--ruler-mm", options.ruler_mm,
-                  "From one of the ruler's finest ticks to the next, by default 1 mm; of a bar: its length")
+                  "Distance between neighbouring finest ticks of the ruler, by default 1 mm; for a bar: its length")
       ->check(above_zero("--ruler-mm"));
   verb.add_option("--two-points", options.two_points, "Scale from two pixels and their distance: U V U V MM")
       ->expected(5);
@@ -32,7 +32,7 @@ void add_scale_options(CLI::App& verb, steps::ScaleRequest& options, std::string
                   "Scale and perspective from the corners of a rectangle: lower left, lower right, upper right, upper "
                   "left, as U V pairs")
       ->expected(8);
-  verb.add_option("--rectangle-mm", options.rectangle_mm, "Its width and height")->expected(2);
+  verb.add_option("--rectangle-mm", options.rectangle_mm, "Width and height of the rectangle")->expected(2);
 }
 
 /// Returns the options as a request of the library.
@@ -71,7 +71,7 @@ void add_evaluate(Application& application) {
           [](const std::string& text) { return is_specimen_id(text) ? std::string() : std::string(kSpecimenIdForm); },
           "ID"));
   verb->add_option("--incision", a.request.incision, "The incision: .csv (x_mm,y_mm,z_mm), .vtp or .mrk.json");
-  verb->add_option("--tumor", a.request.tumor, "The tumour edge, same formats and frame");
+  verb->add_option("--tumor", a.request.tumor, "The tumour edge, in the same formats and frame");
   verb->add_option(
       "--line", a.request.line,
       "Instead of --tumor, for an open cut: the line that --incision was to follow, same formats and frame");
@@ -82,19 +82,20 @@ void add_evaluate(Application& application) {
       ->check(name_of_any<RedLine>());
   add_scale_options(*verb, a.request.scale, a.ruler);
   verb->add_option("--max-gap-mm", a.request.max_gap_mm,
-                   "A red or green ring with a clearly longer gap (by 0.18 mm and 2 pixels) is open; if that of a "
-                   "red one is slightly longer, the "
-                   "verdict says so")
+                   "A red or green ring with a clearly longer gap (by 0.18 mm and 2 pixels) is open; if the gap of a "
+                   "red ring is slightly longer, the verdict says so")
       ->check(between("--max-gap-mm", 0.0, 10.0));
   verb->add_option("--target-mm", a.target_mm, "Target distance; default: 5.0 for a mid-line, 4.5 for an inner edge")
       ->check(above_zero("--target-mm"));
-  verb->add_option("--close-margin-mm", a.request.settings.close_margin_mm, "Clinical cut-off");
+  verb->add_option("--close-margin-mm", a.request.settings.close_margin_mm,
+                   "Clinical cut-off: less tissue than this beside the tumour is too close");
   verb->add_option("--approach", a.approach, "Direction in which the camera looks")->expected(3);
   verb->add_option("--twelve-o-clock", a.twelve, "Direction of 12 o'clock in by_clock; default: up in the picture")
       ->expected(3);
   verb->add_option(
       "--figure", a.request.figure,
-      "The photograph with what was found drawn over it (.png); of contours: the signed error in colour (.svg, .png)");
+      "Figure to write: the photograph with the contours found in it (.png); for contour files: the signed error in "
+      "colour (.svg, .png)");
   verb->add_option("--colors", a.colors, "Colours of the figure: safe for any colour vision, or as in the paper")
       ->check(name_of_any<ErrorColors>());
   verb->add_flag("--open", a.request.is_open, "The incision round the tumour is an open curve");

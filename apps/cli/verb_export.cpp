@@ -69,22 +69,22 @@ void add_export(Application& application) {
       "registration/registration.json -o cut.script",
       run_export);
   verb->add_option("path", a.request.path, "path.json, frame robot")->required();
-  verb->add_option("--robot", a.robot, "The arm")->check(CLI::IsMember({"ur10e"}));
+  verb->add_option("--robot", a.robot, "Robot arm")->check(CLI::IsMember({"ur10e"}));
   verb->add_option("--format", a.format, "Format of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1")
       ->check(CLI::IsMember({"urscript", "joint-csv", "ros-trajectory", "json"}));
   verb->add_option("--motion", a.motion,
                    "Moves of URScript: movep (blends, constant speed; the default) or servoj (timed joints)")
       ->check(name_of_any<ScriptMotion>());
-  verb->add_option("--kind", a.kind, "Which checks apply, in place of those of the path's own kind")
+  verb->add_option("--kind", a.kind, "Kind of path whose checks apply, in place of the path's own kind")
       ->check(CLI::IsMember({"mark", "incise"}));
   verb->add_option("--override", a.request.overrides,
-                   "Write the program although this check fails. Repeat for each check; the program lists them")
+                   "Write the program even if this check fails. Repeat for each check; the program lists them")
       ->expected(1)
       ->take_all();
   add_accept(*verb, a.request.accepted);
   CLI::Option* const of_case =
       verb->add_option("--case", a.case_file,
-                       "Case of the path: its arm, limits, power, heat, tool and overlap, as `incise run` takes them");
+                       "Case of the path: its arm, limits, power, heat, tool and overlap, as `incise run` uses them");
   verb->add_option("--intended", a.request.intended, "The path before correction, to check the deviation");
   verb->add_option("--surface", a.request.surface,
                    "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth, arm, "
@@ -96,8 +96,8 @@ void add_export(Application& application) {
       ->check(above_zero("--power-w"))
       ->check(CLI::Range(0.0, kMostPowerW));
   verb->add_option("--tcp", a.tcp,
-                   "Tool centre point in the flange as on the pendant: x y z (mm) rx ry rz (rad); z along the needle. "
-                   "By default 0 0 150 0 0 0")
+                   "Tool centre point in the flange's frame, as on the pendant: x y z (mm) rx ry rz (rad); z along the "
+                   "needle. By default 0 0 150 0 0 0")
       ->expected(6);
   verb->add_option("--near-joints-deg", a.near_deg, "Joint angles that the arm is near before it starts")
       ->expected(6)
@@ -105,7 +105,7 @@ void add_export(Application& application) {
   verb->add_option("--table-z-mm", a.request.setup.table_z_mm, "Height of the table's plane in the base frame")
       ->check(between("--table-z-mm", -kFarthestTableMm, kFarthestTableMm));
   verb->add_option("--needle-length-mm", a.request.checks.needle_length_mm,
-                   "Length of the needle; behind it comes the shaft")
+                   "Length of the needle; the shaft begins behind it")
       ->check(between("--needle-length-mm", kLeastToolMm, kLargestLengthMm));
   verb->add_option("--shaft-diameter-mm", a.shaft_diameter_mm, "Diameter of the instrument's shaft")
       ->check(between("--shaft-diameter-mm", kLeastToolMm, kLargestLengthMm));

@@ -31,9 +31,9 @@ void print_forecast(const nlohmann::ordered_json& result) {
              result.at("photographs").get<std::size_t>(), result.at("calibrated").get<std::size_t>());
   const auto& alone = result.at("without_simulation");
   const auto& joined = result.at("with_simulation");
-  fmt::print("{:<36} {:+.2f} mm in the mean, sd {:.2f} mm\n", "without simulation", mean_of(alone.at("residual_mm")),
+  fmt::print("{:<36} mean {:+.2f} mm, sd {:.2f} mm\n", "without simulation", mean_of(alone.at("residual_mm")),
              alone.at("level_sd_mm").get<double>());
-  fmt::print("{:<36} {:+.2f} mm beyond {:.2f} of the simulated error, sd {:.2f} mm\n", "with simulation",
+  fmt::print("{:<36} mean {:+.2f} mm plus {:.2f} times the simulated error, sd {:.2f} mm\n", "with simulation",
              mean_of(joined.at("residual_mm")), joined.at("simulated_share").get<double>(),
              joined.at("level_sd_mm").get<double>());
   const auto& eye = joined.at("hand_eye");
@@ -64,8 +64,8 @@ void add_forecast(Application& application) {
   auto chosen = std::make_shared<ForecastOptions>();
   CLI::App* verb = application.add_verb(
       "forecast",
-      "What the photographs of earlier cuts say of this ring before it is cut: its expected error by direction, with "
-      "and without the simulation, how certain that is, and in which respects the ring lies outside those photographed",
+      "Forecast the error of this ring from photographs of earlier cuts: the expected error by direction, with and "
+      "without the simulation, its uncertainty, and in which respects the ring lies outside those photographed",
       "incise forecast specimen --calibration calibration/calibration.json -o out",
       [chosen](const CommonOptions& options) { return forecast_case(*chosen, options); });
   verb->add_option(

@@ -16,11 +16,11 @@ int run(const steps::MeshRequest& arguments, const CommonOptions& options) {
   refuse_input_as_output("-o", request.output, {request.input, request.around});
   if (request.tets > 0 && request.tets < kFewestTets) {
     throw CaseError("command line", "--tets", fmt::format("{}", request.tets),
-                    fmt::format("0, or {} and more", kFewestTets));
+                    fmt::format("0, or at least {}", kFewestTets));
   }
   if (request.around.empty() && request.fine_mm) {
-    throw CaseError("command line", "--fine-mm", "no --around", "a planned cut to be fine around",
-                    "Edges are at most --coarse-mm without it");
+    throw CaseError("command line", "--fine-mm", "no --around", "a planned cut around which to refine the mesh",
+                    "Without it, edges are at most --coarse-mm long");
   }
   if (request.output.extension() != ".vtu") {
     throw CaseError("command line", "-o", request.output.string(), "a file that ends in .vtu");
@@ -36,7 +36,8 @@ void add_mesh(Application& application) {
   verb->add_option("input", a.input,
                    "Labels (.nrrd/.nhdr, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
       ->required();
-  verb->add_option("--around", a.around, "Planned cut on the surface (.csv, .vtp, .mrk.json): fine there");
+  verb->add_option("--around", a.around,
+                   "Planned cut on the surface (.csv, .vtp, .mrk.json), around which the mesh is fine");
   verb->add_option("--fine-mm", a.fine_mm,
                    "Edge length around the cut; by default 0.8, proportionally less for a body shorter than 40 mm")
       ->check(CLI::Range(0.05, 50.0));
@@ -44,7 +45,7 @@ void add_mesh(Application& application) {
                    "Longest edge length; by default 4, proportionally less for a body shorter than 40 mm")
       ->check(CLI::Range(0.05, 100.0));
   verb->add_option("--depth-mm", a.depth_mm, "Depth of the cut")->check(CLI::Range(0.1, 100.0));
-  verb->add_option("--tets", a.tets, "Number of tets to aim for; 0: what the lengths give")
+  verb->add_option("--tets", a.tets, "Number of tets to aim for; 0: as many as the lengths give")
       ->check(whole_between("--tets", 0, 5000000));
 }
 

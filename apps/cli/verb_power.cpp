@@ -33,7 +33,7 @@ int run_power(const laboratory::PowerStepRequest& arguments, const CommonOptions
 void add_limits(CLI::App& verb, PowerRequest& request) {
   add_options_of(verb, request.limits, "bulge_limit_mm", "damage_limit_mm");
   verb.add_option("--fine-mm", request.resolution.fine_mm,
-                  "Edge length of the tets round the cut; coarser ones are quicker, and change the results")
+                  "Edge length of the tets round the cut; coarser tets are faster, but change the results")
       ->check(between("--fine-mm", 0.8, request.resolution.coarse_mm));
 }
 
@@ -43,12 +43,12 @@ void add_power(Application& application) {
   auto [verb, a] = application.add_verb<laboratory::PowerStepRequest>(
       "power",
       "Find the lowest power that cuts virtual specimens without bulging and without thermal damage, as the paper did "
-      "on four tongues; bulge against speed; a surgeon's speed from timed cuts. Virtual. If interrupted, it keeps "
-      "every finished cut, and the same command continues",
+      "on four tongues. Also bulge against speed, and a surgeon's speed from timed cuts. Virtual. If interrupted, it "
+      "keeps every finished cut, and the same command continues",
       "incise power --specimens 4 --speeds-mm-s 3,5,7,9,11 -o power", run_power);
   verb->add_option("specimen", a.files,
                    "Specimen files (incise schema bench); without them specimens are drawn from seeds");
-  verb->add_option("--specimens", a.specimens, "How many to draw, from --seed on; 4 if not given")
+  verb->add_option("--specimens", a.specimens, "Number of specimens to draw, with seeds from --seed on; 4 if not given")
       ->check(whole_between("--specimens", 1, 200));
   verb->add_option("--power-w", a.series.powers_w, "Powers of the generator, W")
       ->delimiter(',')

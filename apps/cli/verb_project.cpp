@@ -68,27 +68,30 @@ void add_project(Application& application) {
       ->required();
   verb->add_option(
       "--camera", a.camera,
-      "JSON with T_robot_camera, where the surface is given in a camera's frame; without it: in the robot's");
+      "JSON with T_robot_camera, if the surface is in a camera's frame; without it, the surface is in the robot's");
   verb->add_option("--metric", a.metric,
                    "Whose lengths to trust. ct: the scale that register fitted is removed from the cloud, so that the "
                    "simulation keeps its size; camera: the simulation takes the cloud's size")
       ->check(CLI::IsMember({"ct", "camera"}));
   verb->add_option(
           "--scale-center", a.scale_center,
-          "ct: a place (mm, robot's frame) where the cloud is right; else the camera's origin (--camera), else "
-          "the middle of the path")
+          "With ct: a place (mm, robot's frame) where the cloud is right; by default the camera's origin (--camera), "
+          "or without a camera the middle of the path")
       ->expected(3);
   verb->add_option("--kind", a.kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s")
       ->check(name_of_any<PathKind>());
   verb->add_option("--axis", a.axis,
                    "Tool axis: as in the path, or against the measured surface's normal (a mark's: the mean axis)")
       ->check(CLI::IsMember({"path", "normal"}));
-  verb->add_option("--depth-mm", a.depth_mm, "Below the surface; 0: 1 mm for a mark, that of the path for an incision")
+  verb->add_option("--depth-mm", a.depth_mm,
+                   "Depth below the surface; 0: 1 mm for a mark, that of the path for an incision")
       ->check(between("--depth-mm", 0.0, kLaidDepthMm.most));
-  verb->add_option("--speed-mm-s", a.speed_mm_s, "Of the tip; 0: 2 mm/s for a mark, that of the path for an incision")
+  verb->add_option("--speed-mm-s", a.speed_mm_s,
+                   "Speed of the tip; 0: 2 mm/s for a mark, that of the path for an incision")
       ->check(between("--speed-mm-s", 0.0, kLaidSpeedMmS.most));
   add_options_of(*verb, a.settings, "max_gap_mm", "smoothing_mm", "max_shift_mm");
-  verb->add_option("--waypoints", a.settings.mark_waypoints, "Of a mark")->check(whole_between("--waypoints", 8, 2000));
+  verb->add_option("--waypoints", a.settings.mark_waypoints, "Number of waypoints of a mark")
+      ->check(whole_between("--waypoints", 8, 2000));
 }
 
 }  // namespace incise::cli

@@ -58,8 +58,8 @@ int run_register(const RegisterArguments& arguments, const CommonOptions& option
 void add_register(Application& application) {
   auto [verb, a] = application.add_verb<RegisterArguments>(
       "register",
-      "Find the similarity transform from one cloud to another, and whether to trust it. Exit status 4 if it is not "
-      "to be trusted",
+      "Find the similarity transform from one cloud to another, and whether to trust it. Exit status 4: do not trust "
+      "it",
       "incise register --source simulated.ply --target tissue.ply --scale fixed --settling-mm 1 -o registration",
       run_register);
   verb->add_option("--source", a.request.source, "Cloud or surface to be moved (.ply, .vtp, .stl, .obj)")->required();
@@ -68,10 +68,10 @@ void add_register(Application& application) {
   verb->add_option("--method", a.method, "nonrigid: also bend the source to the target (moved_source.ply)")
       ->check(CLI::IsMember({"rigid", "nonrigid"}));
   add_options_of(*verb, a.request.settings, "outlier_weight", "rotations", "max_iterations", "settling_mm");
-  verb->add_flag("--from-identity", a.from_identity, "No search: the clouds lie nearly right");
-  verb->add_flag("--no-icp", a.no_icp, "Coherent point drift alone");
+  verb->add_flag("--from-identity", a.from_identity, "Do not search: the clouds already nearly coincide");
+  verb->add_flag("--no-icp", a.no_icp, "Use coherent point drift alone");
   verb->add_option("--max-rmse-mm", a.request.max_rmse_mm,
-                   "A larger residual is not acceptable; 0: 3 % of the target's radius")
+                   "Greatest acceptable residual; 0: 3 % of the target's radius")
       ->check(between("--max-rmse-mm", 0.0, 1000.0));
   add_options_of(*verb, a.nonrigid, "smoothness", "stiffness");
   verb->add_option("--approach", a.approach, "Line of sight of the picture")->expected(3);

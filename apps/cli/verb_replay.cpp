@@ -18,7 +18,8 @@ int run_replay(const steps::ReplayRequest& arguments, const CommonOptions& optio
 void add_replay(Application& application) {
   auto [verb, a] = application.add_verb<steps::ReplayRequest>(
       "replay",
-      "Play a program: what the tip of the tool would do. Exit status 4 when it cannot be run, or leaves its path",
+      "Play a program and show what the tip of the tool would do. Exit status 4 if it cannot be run, or the tip leaves "
+      "its path",
       "incise replay cut.script --speed-slider 50 -o replay", run_replay);
   verb->add_option("program", a.program, "A program that `incise export` wrote: URScript, .csv or .json")->required();
   verb->add_option("--speed-slider", a.slider_percent, "Setting of the controller's speed slider, percent")

@@ -19,7 +19,7 @@ void add_report(Application& application) {
         Console console(options.level());
         const bool is_of_a_study = !arguments.folder.empty();
         if (!is_of_a_study && arguments.registration.empty() && arguments.replay.empty()) {
-          throw CaseError("command line", "report", "no folder", "a study's folder, --registration or --replay");
+          throw CaseError("command line", "report", "no folder", "a run's folder, --registration or --replay");
         }
         const std::filesystem::path output = !options.output.empty() ? options.output
                                              : is_of_a_study         ? arguments.folder / "report.html"

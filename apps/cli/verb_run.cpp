@@ -9,7 +9,9 @@ void add_run(Application& application) {
   auto case_path = std::make_shared<std::filesystem::path>();
   auto cut = std::make_shared<CutOptions>();
   CLI::App* verb = application.add_verb(
-      "run", "The whole loop on your case: CT, mesh, stretch, plan, cut, correct, cut again, program, report. Resumes",
+      "run",
+      "The whole loop on your case: CT, mesh, stretch, plan, cut, correct, cut again, program, report. Resumes an "
+      "interrupted run",
       "incise run my_patient -o my_patient/out", [case_path, cut](const CommonOptions& options) {
         require_accepted_ids(cut->accepted);
         return run_whole_loop(*case_path, output_of(*case_path, options), options, *cut);

@@ -41,8 +41,10 @@ void add_schema(Application& application) {
         }
         return kDone;
       });
-  verb->add_option("what", a.what, "Which file")->check(CLI::IsMember({"bench", "bench2", "case", "path"}))->required();
-  verb->add_flag("--defaults", a.defaults, "A file with every default instead of the schema");
+  verb->add_option("what", a.what, "Kind of file")
+      ->check(CLI::IsMember({"bench", "bench2", "case", "path"}))
+      ->required();
+  verb->add_flag("--defaults", a.defaults, "Print a file with every default instead of the schema");
 }
 
 }  // namespace incise::cli

@@ -44,10 +44,9 @@ void add_segment(Application& application) {
   verb->add_option("--window-hu", a.window, "Least and greatest HU of tissue")->expected(2);
   verb->add_option("--roi-box-mm", a.roi, "Low x y z and high x y z of the box to look in, LPS")->expected(6);
   verb->add_option("--seed-mm", a.seed, "A point inside the specimen, LPS")->expected(3);
-  verb->add_option("--opening-mm", a.opening_mm, "Cut bridges thinner than twice this");
-  verb->add_option(
-          "--smoothing-mm", a.smoothing_mm,
-          "Length that the tissue's surface is smoothed over; by default 0.6, or 1.2 voxels where that is less")
+  verb->add_option("--opening-mm", a.opening_mm, "Cut bridges thinner than twice this length");
+  verb->add_option("--smoothing-mm", a.smoothing_mm,
+                   "Length over which the tissue's surface is smoothed; by default 0.6, or 1.2 voxels if that is less")
       ->check(CLI::Range(0.0, 5.0));
   verb->add_option("--spacing-mm", a.spacing, "PNG slices: column, row and slice spacing")->expected(3);
   verb->add_option("--hu", a.hu, "PNG slices: slope and intercept")->expected(2);

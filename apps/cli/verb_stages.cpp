@@ -36,15 +36,13 @@ void add_cutting_stage(Application& application, const char* name, const char* w
 
 void add_stages(Application& application) {
   add_stage(application, "deform",
-            "Clamp and stretch the tissue: static equilibrium under the case's constraints. If interrupted, it keeps "
-            "nothing of the stretch: "
-            "run again, it starts over and ends in the same bits",
+            "Clamp and stretch the tissue: static equilibrium under the case's constraints. An interrupted stretch is "
+            "not kept: run again, it starts over and gives the same result, bit for bit",
             "incise deform specimen -o out", Stage::Stretch);
   add_stage(application, "plan", "", "incise plan specimen -o out", Stage::Plan);
   add_cutting_stage(application, "simulate",
                     "Cut along the planned path (or the case's own) and measure the result. If interrupted, it leaves "
-                    "a checkpoint, from "
-                    "which it continues and ends in the same bits",
+                    "a checkpoint; run again, it continues from there and gives the same result, bit for bit",
                     "incise simulate specimen -o out", Stage::Simulate);
 }
 

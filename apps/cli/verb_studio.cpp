@@ -36,8 +36,7 @@ studio::ServerSettings server_settings(const StudioArguments& arguments) {
 int run_studio(const StudioArguments& arguments) {
   if (!arguments.worker.empty()) return studio::run_worker(arguments.worker);
   studio::serve(server_settings(arguments), [](const std::string& address) {
-    std::printf("incise studio: open %s\nCtrl-C ends it. What was computed is kept in the case's folder.\n",
-                address.c_str());
+    std::printf("incise studio: open %s\nCtrl-C ends it. Results are kept in the case's folder.\n", address.c_str());
     std::fflush(stdout);
   });
   return kDone;
@@ -52,7 +51,7 @@ void add_studio(Application& application) {
       [](const StudioArguments& arguments, const CommonOptions&) { return run_studio(arguments); });
   verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml; none: choose in the browser");
   verb->add_option("--root", a.roots,
-                   "A folder whose files may be opened, too, beside the one that this is started in");
+                   "Folder whose files may also be opened, besides the folder in which the studio is started");
   verb->add_option("--port", a.port, "Port of 127.0.0.1; 0: a free one")->check(whole_between("--port", 0, 65535));
   verb->add_option("--worker", a.worker)->group("");
 }

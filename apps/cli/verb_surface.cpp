@@ -19,7 +19,7 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
   request.output = options.required_output("surface.ply");
   if (request.plane_z_mm.has_value() != !request.camera.empty()) {
     throw CaseError("command line", request.plane_z_mm ? "--camera" : "--plane-z-mm", "nothing",
-                    "both --camera and --plane-z-mm, or none");
+                    "both --camera and --plane-z-mm, or neither");
   }
   const bool is_vtp = request.output.extension() == ".vtp";
   if (is_vtp && request.plane_z_mm) {
@@ -42,9 +42,7 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
 
 void add_surface(Application& application) {
   auto [verb, a] = application.add_verb<SurfaceArguments>(
-      "surface",
-      "The surface that an observer sees, as an evenly sampled cloud with normals; of a camera's "
-      "cloud, the cleaned part",
+      "surface", "Sample the surface that an observer sees, as an even cloud with normals; or clean a camera's cloud",
       "incise surface scene/scan.ply --planes 1 --approach 0 0 1 --camera scene/camera.json "
       "--plane-z-mm 74 -o tissue.ply",
       make_surface);
@@ -55,16 +53,16 @@ void add_surface(Application& application) {
   verb->add_option("--approach", a.sight, "Direction of sight; default: the case's, or 0 0 -1")->expected(3);
   verb->add_option("--spacing-mm", a.view.spacing_mm, "Mesh: least distance between two points")
       ->check(CLI::Range(0.01, 100.0));
-  verb->add_option("--max-tilt-deg", a.view.largest_tilt_deg, "Mesh: steeper faces are left out")
+  verb->add_option("--max-tilt-deg", a.view.largest_tilt_deg, "Mesh: greatest tilt; steeper faces are left out")
       ->check(CLI::Range(1.0, 90.0));
-  verb->add_option("--box", a.box, "Cloud: keep what lies between two corners, x y z x y z")->expected(6);
+  verb->add_option("--box", a.box, "Cloud: box to keep, between two corners, x y z x y z")->expected(6);
   add_options_of(*verb, a.cleaning, "planes", "plane_tolerance_mm", "outlier_neighbours", "outlier_deviations",
                  "voxel_mm");
   verb->add_option("--camera", a.camera, "Cloud in a camera's frame: JSON with T_robot_camera; with --plane-z-mm");
   verb->add_option(
       "--plane-z-mm", a.plane_z_mm,
-      "Height of the largest plane in the robot's frame: the camera's scale follows from it and is taken out "
-      "of the cloud; with --camera and --planes");
+      "Height of the largest plane in the robot's frame: it gives the camera's scale, which is removed from the cloud; "
+      "with --camera and --planes");
 }
 
 }  // namespace incise::cli

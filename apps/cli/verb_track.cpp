@@ -33,7 +33,7 @@ int run(const TrackArguments& arguments, const CommonOptions& options) {
   }
   if (request.is_open && request.has_plan && request.margin_mm > 0.0) {
     throw CaseError("command line", "--margin-mm", fmt::format("{} mm for an open mark", request.margin_mm),
-                    "0: an open mark is cut along");
+                    "0: the cut follows an open mark");
   }
   request.mark.reset();
   if (arguments.mark_name != kNoMark) request.mark = value_named<InkColor>(arguments.mark_name);
@@ -60,7 +60,8 @@ void add_track(Application& application) {
   verb->add_option("--intrinsics", a.intrinsics,
                    "JSON: width, height, fx, fy, cx, cy, depth_scale (m), distortion, depth {...}, T_color_depth");
   verb->add_option("--camera", a.camera,
-                   "JSON with T_robot_camera: results in the robot's frame; without it: in the colour camera's");
+                   "JSON with T_robot_camera, for results in the robot's frame; without it, they are in the colour "
+                   "camera's");
   verb->add_option("--mark", a.mark_name, "Colour of the mark; none: the cloud alone")
       ->check(CLI::IsMember({"red", "green", kNoMark}));
   const std::vector<CLI::Option*> before = verb->get_options();
@@ -68,8 +69,8 @@ void add_track(Application& application) {
       ->check(name_of_any<LineEdge>());
   verb->add_option(
           "--max-gap-mm", a.max_gap_mm,
-          "A ring with a longer gap is open. A gap is known to 0.18 mm and 2 pixels: a ring is taken as closed up "
-          "to that much more, and a warning says so")
+          "A ring with a longer gap is open. A gap is known only to 0.18 mm and 2 pixels: a ring whose gap is longer "
+          "by at most that is taken as closed, with a warning")
       ->check(zero_or_more("--max-gap-mm"));
   verb->add_option("--max-hole-mm", a.lift.max_hole_mm, "Longest stretch without depth that is bridged")
       ->check(zero_or_more("--max-hole-mm"));
@@ -85,7 +86,8 @@ void add_track(Application& application) {
   }
   verb->add_option("--ply-width", a.ply_width, "Columns of an organised cloud whose header does not state them")
       ->check(above_zero("--ply-width"));
-  verb->add_option("--ply-unit-mm", a.ply_unit_mm, "Its unit: 1000 for metres")->check(above_zero("--ply-unit-mm"));
+  verb->add_option("--ply-unit-mm", a.ply_unit_mm, "Unit of the organised cloud, mm: 1000 for metres")
+      ->check(above_zero("--ply-unit-mm"));
 }
 
 }  // namespace incise::cli

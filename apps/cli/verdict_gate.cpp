@@ -11,7 +11,7 @@ namespace incise::cli {
 
 void add_accept(CLI::App& verb, std::vector<std::string>& accepted) {
   verb.add_option("--accept", accepted,
-                  "Write the program although the verdict has the caution of this id, such as depth. Repeat for each "
+                  "Write the program even if the verdict has the caution with this id, such as depth. Repeat for each "
                   "caution; the program lists them. A refusal cannot be accepted")
       ->expected(1)
       ->take_all();
@@ -26,7 +26,7 @@ void require_accepted_ids(const std::vector<std::string>& accepted) {
     if (std::find(cautions.begin(), cautions.end(), id) != cautions.end()) continue;
     const bool is_refusal = std::any_of(verdict_rules().begin(), verdict_rules().end(), [&](const VerdictRule& rule) { return rule.id == id; });
     throw CaseError("command line", "--accept", fmt::format("'{}'", id),
-                    is_refusal ? std::string("the id of a caution; nobody can accept what the verdict refuses")
+                    is_refusal ? std::string("the id of a caution; nobody can accept a refusal")
                                : fmt::format("one of {}", fmt::join(cautions, ", ")),
                     is_refusal ? std::string() : fmt::format("Did you mean '{}'?", nearest_name(id, cautions)));
   }

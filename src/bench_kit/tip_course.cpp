@@ -31,7 +31,7 @@ std::vector<TipPose> asked_course(const RobotProgram& program) {
   for (std::size_t i = 0; i < program.poses.size(); ++i) {
     const ProgramPose& pose = program.poses[i];
     INCISE_REQUIRE(pose.tip_mm.allFinite() && pose.R_robot_tool.allFinite() && std::isfinite(pose.time_s),
-                   fmt::format("expected finite numbers, found others at pose {}", i));
+                   fmt::format("expected finite numbers, found a non-finite one at pose {}", i));
     course.push_back({pose.time_s, pose.tip_mm, pose.R_robot_tool.col(2), cuts(pose.phase)});
   }
   return course;

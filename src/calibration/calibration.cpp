@@ -24,17 +24,17 @@ std::optional<double> mean_of(const std::optional<Summary>& summary) {
 }
 void describe(Visitor& v, RunFigures& f) {
   const std::optional<Summary>& errors = f.run.paper_abs_error_mm;
-  v.derived("name", f.name, "Of the specimen.");
+  v.derived("name", f.name, "Name of the specimen.");
   v.derived("outcome", f.run.outcome, "How the cut ended.");
-  v.derived("failure", f.run.is_failure(), "Whether it failed in the paper's sense.");
-  if (!f.run.problem.empty()) v.derived("problem", f.run.problem, "Why it could not be carried out.");
+  v.derived("failure", f.run.is_failure(), "Whether the cut failed in the paper's sense.");
+  if (!f.run.problem.empty()) v.derived("problem", f.run.problem, "Why the cut could not be carried out.");
   v.derived("stiffness_of_case", f.run.setting.stiffness_of_case, "Young's modulus over that of the case.");
   v.derived("mean_abs_mm", mean_of(errors), "Mean |error| as the paper takes it.");
-  v.derived("sd_abs_mm", errors ? std::optional(errors->sd) : std::nullopt, "Its standard deviation.");
-  v.derived("max_abs_mm", errors ? std::optional(errors->max) : std::nullopt, "Its greatest value.");
-  v.derived("mean_signed_mm", mean_of(f.run.signed_error_mm), "Of the mid-line.");
-  v.derived("mean_inner_signed_mm", mean_of(f.run.inner_signed_error_mm), "Of the inner edge.");
-  v.derived("tets", f.run.tets, "Of the mesh before the cut.");
+  v.derived("sd_abs_mm", errors ? std::optional(errors->sd) : std::nullopt, "Standard deviation of that |error|.");
+  v.derived("max_abs_mm", errors ? std::optional(errors->max) : std::nullopt, "Greatest value of that |error|.");
+  v.derived("mean_signed_mm", mean_of(f.run.signed_error_mm), "Mean signed error of the mid-line.");
+  v.derived("mean_inner_signed_mm", mean_of(f.run.inner_signed_error_mm), "Mean signed error of the inner edge.");
+  v.derived("tets", f.run.tets, "Number of tets before the cut.");
   v.derived("wall_s", f.run.wall_s, "Time that the simulation took.");
 }
 
@@ -46,19 +46,20 @@ struct RowFigures {
 void describe(Visitor& v, RowFigures& f) {
   const ScoreRow& row = f.row;
   const RunSetting& setting = row.setting;
-  v.derived("speed_mm_s", setting.speed_mm_s, "Of the simulated tool.");
-  v.derived("dullness", setting.dullness, "In reference steps.");
+  v.derived("speed_mm_s", setting.speed_mm_s, "Speed of the simulated tool.");
+  v.derived("dullness", setting.dullness, "Contact needed before a tet is removed, in reference steps.");
   v.derived("drag_length_mm", setting.speed_mm_s * setting.dullness * f.calibration.reference_step_s,
-            "How far held tissue is drawn along.");
-  v.derived("failure", row.is_failure, "Whether one specimen at least failed.");
-  v.derived("mean_abs_mm", row.mean_abs_mm, "Mean of the specimens' means.");
+            "Speed times dwell: how far the tool travels while it holds a tet.");
+  v.derived("failure", row.is_failure, "Whether at least one specimen failed.");
+  v.derived("mean_abs_mm", row.mean_abs_mm, "Mean of the specimens' mean |errors|.");
   v.derived("sd_abs_mm", row.sd_abs_mm, "Mean of their standard deviations.");
-  v.derived("max_abs_mm", row.max_abs_mm, "Greatest of any specimen that did not fail.");
-  v.derived("mean_signed_mm", row.mean_signed_mm, "Of the mid-lines.");
-  v.derived("mean_inner_signed_mm", row.mean_inner_signed_mm, "Of the inner edges.");
-  v.derived("score_percent", row.percent, "Of the baseline; 0 for a failure.");
-  v.derived("inner_edge_score_percent", row.inner_percent, "Inner edges against photographs.");
-  v.derived("inner_edge_specimens", row.inner_specimens, "Whose inner edges count.");
+  v.derived("max_abs_mm", row.max_abs_mm, "Greatest |error| of any specimen that did not fail.");
+  v.derived("mean_signed_mm", row.mean_signed_mm, "Mean signed error of the mid-lines.");
+  v.derived("mean_inner_signed_mm", row.mean_inner_signed_mm, "Mean signed error of the inner edges.");
+  v.derived("score_percent", row.percent, "Score in per cent of the baseline; 0 for a failure.");
+  v.derived("inner_edge_score_percent", row.inner_percent,
+            "Score of the inner edges against those of the photographs.");
+  v.derived("inner_edge_specimens", row.inner_specimens, "Number of specimens whose inner edges count.");
   v.begin_list({"specimens"}, f.calibration.specimens.size(), 1);
   for (const CalibratedSpecimen& specimen : f.calibration.specimens) {
     RunFigures run{specimen.name, specimen.runs[row.run]};
@@ -75,33 +76,34 @@ void describe_parameter(Visitor& v, const Field& field, ParameterEstimate& estim
 }
 
 void describe_parameters(Visitor& v, DragFit& fit, Identifiability& told) {
-  describe_parameter(v, {"drag_length_mm", "How far held tissue is drawn along.", "mm"}, fit.drag_length_mm,
-                     told.parameters[0]);
+  describe_parameter(v, {"drag_length_mm", "Speed times dwell: how far the tool travels while it holds a tet.", "mm"},
+                     fit.drag_length_mm, told.parameters[0]);
   describe_parameter(v, {"ln_stiffness_factor", "Logarithm of the stiffness over the reference."}, fit.ln_stiffness,
                      told.parameters[1]);
   describe_parameter(v, {"bias_mm", "To be added to simulated signed errors.", "mm"}, fit.bias_mm, told.parameters[2]);
   v.derived("stiffness_varied", fit.knows_stiffness, "Whether a second stiffness was cut for every specimen.");
-  v.derived("correlation", fit.correlation, "Of the three, in this order.");
+  v.derived("correlation", fit.correlation, "Correlations of the three, in this order.");
 }
 
 /// A reader needs the samples, the residual and, to forecast the next ring, the fitted errors.
 void describe_fit(Visitor& v, DragFit& fit, Identifiability& told) {
   v.begin({"posterior"});
   if (!v.sets()) describe_parameters(v, fit, told);
-  v("samples", fit.samples, "Of the posterior.");
+  v("samples", fit.samples, "Samples of the posterior.");
   double sum = 0.0;
   for (const PosteriorSample& sample : fit.samples) sum += sample.weight;
   if (v.sets() && (fit.samples.empty() || std::abs(sum - 1.0) > kWeightTolerance))
     v.refuse({"samples"}, fmt::format("weights that add up to {}", sum), "weights that add up to 1");
   v.end();
-  v("residual", fit.residual, "What the fit leaves.");
+  v("residual", fit.residual, "Difference between photograph and simulation that the fit leaves.");
   std::optional<std::vector<SpecimenFit>> fitted = fit.specimens;
-  v("fitted", fitted, "Specimen by specimen.");
+  v("fitted", fitted, "The fit, specimen by specimen.");
   if (v.sets()) fit.specimens = fitted.value_or(std::vector<SpecimenFit>{});
-  v.derived("identifiability", told.sentences, "What the data identify.");
+  v.derived("identifiability", told.sentences, "Which parameters the data identify, in sentences.");
   if (v.sets() || fit.specimens.empty()) return;  // a file of version 0.1.0 has none
-  v.derived("photographed_profile", photographed_profile(fit.specimens), "What photographs alone say of the next cut.");
-  v.derived("residual_profile", residual_profile(fit), "What they say beyond the simulation and its bias.");
+  v.derived("photographed_profile", photographed_profile(fit.specimens),
+            "Forecast of the next cut from photographs alone.");
+  v.derived("residual_profile", residual_profile(fit), "What photographs show beyond the simulation and its bias.");
 }
 /// The fitted specimens of a file must be those of the calibration, with errors that a photograph can have.
 void require_fitted_specimens(const Visitor& v, const Calibration& calibration) {
@@ -120,56 +122,59 @@ void require_fitted_specimens(const Visitor& v, const Calibration& calibration) 
       v.refuse({place + "/fitted_mm"}, fmt::format("{} numbers", one.fitted_mm.size()),
                fmt::format("as many as observed_mm, {}, and at least one", one.observed_mm.size()));
     if (const double mean = difference_mm(one); !contains(kAnatomyErrorMm, mean))
-      v.refuse({place + "/observed_mm"}, fmt::format("{:.3g} mm off in the mean", mean), "millimetres");
+      v.refuse({place + "/observed_mm"}, fmt::format("a mean difference of {:.3g} mm from fitted_mm", mean),
+               "millimetres");
   }
 }
 
 }  // namespace
 
 void describe(Visitor& v, CalibratedSpecimen& s) {
-  v("name", s.name, "Of the specimen.");
+  v("name", s.name, "Name of the specimen.");
   v.derived("photographed_mean_abs_mm", s.photographed.mean_mm, "Mean |error| of the photograph.");
   v.derived("photographed_max_abs_mm", s.photographed.max_mm, "Greatest |error| of the photograph.");
   v({"photographed_mean_signed_mm", "Mean signed error of the photograph.", "mm"}, s.signed_mean_mm, kAnatomyErrorMm);
-  v({"moved_mean_mm", "How far the path that was cut lies outside the planned one, mean; none: it is that.", "mm"},
+  v({"moved_mean_mm",
+     "Mean distance by which the path that was cut lies outside the planned one; none: the planned path was cut.",
+     "mm"},
     s.moved_mean_mm, kAnatomyErrorMm);
-  v({"youngs_modulus_kpa", "Reference: the case's, or what the pull makes of it.", "kPa"}, s.youngs_modulus_kpa,
-    {kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
+  v({"youngs_modulus_kpa", "Reference Young's modulus: the case's, or the one that the measured pull implies.", "kPa"},
+    s.youngs_modulus_kpa, {kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
   v({"stretch_force_n", "Measured pull.", "N"}, s.stretch_force_n, kForceN);
   v({"simulated_force_n", "Pull of the simulated specimen.", "N"}, s.simulated_force_n, {0.0, kForceN.most});
   std::optional<double> stretch_mm = s.stretch_mm;
-  v({"stretch_mm", "How far its end was displaced.", "mm"}, stretch_mm, {0.0, kAnatomyMm.most});
+  v({"stretch_mm", "How far the specimen's end was displaced.", "mm"}, stretch_mm, {0.0, kAnatomyMm.most});
   s.stretch_mm = stretch_mm.value_or(0.0);
   v("registration", s.registration, "How well the simulated surface lies on the measured one.");
-  v("ring", s.ring, "In what ring, tissue and cut differ from others.");
+  v("ring", s.ring, "Covariates of the ring, the tissue and the cut.");
   v.derived("picture_turn_deg", s.picture.turn_deg, "Turn of the photograph.");
-  v.derived("picture_rms_mm", s.picture.rms_mm, "Of the distances between the edges that is left.");
+  v.derived("picture_rms_mm", s.picture.rms_mm, "Root mean square of the distances that remain between the edges.");
   v.bulk("held", s.held, "Digest of the held specimen.");
-  v.bulk("runs", s.runs, "Its simulated cuts.");
+  v.bulk("runs", s.runs, "Simulated cuts of the specimen.");
   v.derived("read_by_midline", s.read_by_midline, "Runs whose ring closed, but not at the skin.");
 }
 
 void describe(Visitor& v, Calibration& c) {
   constant(v, {"schema", "Format and version of this file."}, "incise.calibration/1");
-  v("method", c.method, "How it was calibrated.");
-  v("virtual", c.is_virtual, "Whether one specimen at least is.");
+  v("method", c.method, "Method of the calibration.");
+  v("virtual", c.is_virtual, "Whether at least one specimen is virtual.");
   const bool has_chosen = v.optional({"chosen"}, c.chosen.has_value());
   if (v.sets()) c.chosen = has_chosen ? std::optional(RunSetting{}) : std::nullopt;
   if (has_chosen) {
-    v.begin({"chosen", "With which a simulated ring matches the photographed one."});
+    v.begin({"chosen", "Settings with which a simulated ring matches the photographed one."});
     describe(v, *c.chosen);
     v.derived("drag_length_mm", c.chosen->speed_mm_s * c.chosen->dullness * c.reference_step_s,
-              "How far held tissue is drawn along.");
+              "Speed times dwell: how far the tool travels while it holds a tet.");
     v.end();
   }
-  v("score_percent", c.score_percent, "Of the chosen setting.");
+  v("score_percent", c.score_percent, "Score of the chosen settings.");
   v({"baseline_mm", "0.75 mean + 0.25 max of the photographed errors.", "mm"}, c.table.baseline_mm, kAnatomyMm);
   v({"reference_step_s", "The time that one unit of dullness represents.", "s"}, c.reference_step_s, {1e-6, 1.0});
-  v("cut_rule", c.cut_rule, "Of the simulated cuts (cut.rule).");
-  v.derived("simulations", c.simulations, "In all.");
-  v.derived("verdict", c.verdict, "On the photographs.");
-  v("specimens", c.specimens, "Calibrated to.");
-  v.derived("left_out", c.left_out, "That the fit could not use.");
+  v("cut_rule", c.cut_rule, "Rule of the simulated cuts (cut.rule).");
+  v.derived("simulations", c.simulations, "Number of simulations.");
+  v.derived("verdict", c.verdict, "Verdict on the photographs.");
+  v("specimens", c.specimens, "Specimens to which the simulation is calibrated.");
+  v.derived("left_out", c.left_out, "Specimens that the fit could not use.");
   const bool has_fit = v.optional({"posterior"}, c.fit.has_value());
   if (v.sets()) {
     c.fit = has_fit ? std::optional(DragFit{}) : std::nullopt;
@@ -181,10 +186,10 @@ void describe(Visitor& v, Calibration& c) {
   }
   if (v.sets()) {
     const bool is_fit = c.method == CalibrationMethod::Fit;
-    if (is_fit && !has_fit) v.refuse({"posterior"}, "null", "that of a fit");
+    if (is_fit && !has_fit) v.refuse({"posterior"}, "null", "the posterior of a fit");
     return;
   }
-  v.begin_list({"rows", "Setting by setting."}, c.table.rows.size(), 1);
+  v.begin_list({"rows", "The table, setting by setting."}, c.table.rows.size(), 1);
   for (const ScoreRow& row : c.table.rows) {
     RowFigures figures{c, row};
     v(Field{}, figures);

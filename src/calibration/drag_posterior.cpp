@@ -247,8 +247,8 @@ DragPosterior posterior_on_grid(const std::vector<FitSpecimen>& specimens, const
     posterior.knows_stiffness = posterior.knows_stiffness && specimen.response.knows_stiffness();
   }
   INCISE_REQUIRE(least < most,
-                 fmt::format("expected drag lengths that all specimens were simulated with, found none: the "
-                             "least common one is {} mm, the greatest {} mm",
+                 fmt::format("expected a range of drag lengths over which all specimens were simulated, found none: "
+                             "it would begin at {} mm and end at {} mm",
                              least, most));
   posterior.drag_lengths_mm = evenly(least, most, kDragSteps);
   const double reach = kStiffnessReach * settings.stiffness_sd;

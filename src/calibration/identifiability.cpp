@@ -34,7 +34,7 @@ std::string sentence_of(const ParameterVerdict& verdict, std::size_t parameter) 
   const char* told = verdict.told == Identified::Apart ? "is identified by the data"
                      : verdict.told == Identified::Partly
                          ? "is identified in part"
-                         : "is not identified by the data: its value is what was assumed";
+                         : "is not identified by the data: its value is the assumed one";
   std::string text =
       fmt::format("{} {} (its sd is {:.0f} % of the prior sd", name, told, 100.0 * verdict.share_of_prior_sd);
   for (std::size_t other = 0; other < 3; ++other) {

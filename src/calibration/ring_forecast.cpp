@@ -458,40 +458,42 @@ HandEyeEstimate RingForecaster::hand_eye() const {
 }
 
 void describe(Visitor& v, RingSpreads& s) {
-  v({"by_start_mm", "Common to all cuts, by direction from the start.", "mm"}, s.by_start_mm);
-  v({"in_view_mm", "Common to all cuts, by direction in the view.", "mm"}, s.in_view_mm);
-  v({"hand_eye_mm", "Of the common offset in the view, along each axis.", "mm"}, s.hand_eye_mm);
-  v({"own_mm", "Of each cut by itself, along the ring.", "mm"}, s.own_mm);
-  v({"level_mm", "The same, all round.", "mm"}, s.level_mm);
-  v({"shift_mm", "The same, of its offset along each axis.", "mm"}, s.shift_mm);
-  v({"reading_mm", "Of a sector's reading.", "mm"}, s.reading_mm);
-  v({"common_deg", "Angle over which the correlation of the common ones falls to 1/e.", "deg"}, s.common_deg);
-  v({"own_deg", "Likewise, of each cut's own.", "deg"}, s.own_deg);
-  v({"common_mm", "Of the mean error that all cuts have in common; not estimated.", "mm"}, s.common_mm);
-  v("share", s.share, "Of the share of simulated differences about 1; not estimated.");
-  v({"along_mm", "What a cut is shifted along the pull per step of its place along it.", "mm"}, s.along_mm);
-  v({"aside_mm", "What it is shifted across it per step of its place across it.", "mm"}, s.aside_mm);
-  v.begin({"slope_mm", "What the mean error gains per step of each covariate, standard deviation.", "mm"});
+  v({"by_start_mm", "Spread of the error common to all cuts, by direction from the start.", "mm"}, s.by_start_mm);
+  v({"in_view_mm", "Spread of the error common to all cuts, by direction in the view.", "mm"}, s.in_view_mm);
+  v({"hand_eye_mm", "Spread of the common offset in the view, along each axis.", "mm"}, s.hand_eye_mm);
+  v({"own_mm", "Spread of each cut's own error, along the ring.", "mm"}, s.own_mm);
+  v({"level_mm", "Spread of the part of that error that is the same all round.", "mm"}, s.level_mm);
+  v({"shift_mm", "Spread of each cut's own offset, along each axis.", "mm"}, s.shift_mm);
+  v({"reading_mm", "Spread of a sector's reading.", "mm"}, s.reading_mm);
+  v({"common_deg", "Angle over which the correlation of the errors common to all cuts falls to 1/e.", "deg"},
+    s.common_deg);
+  v({"own_deg", "Angle over which the correlation of each cut's own error falls to 1/e.", "deg"}, s.own_deg);
+  v({"common_mm", "Spread of the mean error that all cuts have in common; not estimated.", "mm"}, s.common_mm);
+  v("share", s.share, "Spread of the share of simulated differences about 1; not estimated.");
+  v({"along_mm", "Spread of a cut's shift along the pull per step of its place along the pull.", "mm"}, s.along_mm);
+  v({"aside_mm", "Spread of a cut's shift across the pull per step of its place across it.", "mm"}, s.aside_mm);
+  v.begin({"slope_mm", "Change of the mean error per step of each covariate, standard deviation.", "mm"});
   for (std::size_t k = 0; k < s.slope_mm.size(); ++k)
-    v({kRingCovariateNames[k], "Of this covariate.", "mm"}, s.slope_mm[k]);
+    v({kRingCovariateNames[k], "Change of the mean error per step of this covariate.", "mm"}, s.slope_mm[k]);
   v.end();
 }
 
 void describe(Visitor& v, HandEyeEstimate& e) {
-  v.derived("offset_mm", std::vector{e.offset_mm.x(), e.offset_mm.y()}, "Along x and y of the view.");
-  v.derived("sd_mm", std::vector{e.sd_mm.x(), e.sd_mm.y()}, "Likewise.");
+  v.derived("offset_mm", std::vector{e.offset_mm.x(), e.offset_mm.y()}, "Hand-eye offset along x and y of the view.");
+  v.derived("sd_mm", std::vector{e.sd_mm.x(), e.sd_mm.y()}, "Standard deviations of the offset.");
   v.derived("low_mm", std::vector{e.low_mm().x(), e.low_mm().y()}, "Lower ends of the 95 % intervals.");
-  v.derived("high_mm", std::vector{e.high_mm().x(), e.high_mm().y()}, "Upper ends.");
+  v.derived("high_mm", std::vector{e.high_mm().x(), e.high_mm().y()}, "Upper ends of the 95 % intervals.");
 }
 
 void describe(Visitor& v, RingForecast& f) {
-  v.derived("simulated_share", f.simulated_share, "How much of the simulated error, its bias included, is expected.");
-  v.derived("share_sd", f.share_sd, "With which it is known.");
-  v.derived("residual_mm", f.residual_mm, "What is expected beyond that, by sector from the start direction on.");
-  v.derived("sd_mm", f.sd_mm, "Of one photograph about that, by sector, the share taken as known.");
-  v.derived("level_sd_mm", f.level_sd_mm, "Of its mean round the ring.");
+  v.derived("simulated_share", f.simulated_share, "Share of the simulated error, its bias included, that is expected.");
+  v.derived("share_sd", f.share_sd, "Standard deviation of that share.");
+  v.derived("residual_mm", f.residual_mm, "Error expected beyond that share, by sector from the start direction on.");
+  v.derived("sd_mm", f.sd_mm,
+            "Standard deviation of one photograph about the forecast, by sector, taking the share as exact.");
+  v.derived("level_sd_mm", f.level_sd_mm, "Standard deviation of the photograph's mean round the ring, likewise.");
   std::vector<std::string> unlike(f.unlike.begin(), f.unlike.end());
-  v.derived("unlike", unlike, "Covariates outside the observations' 10th to 90th percentile, the outline left out.");
+  v.derived("unlike", unlike, "Covariates outside the observations' 10th to 90th percentile, except the outline.");
 }
 
 }  // namespace incise

@@ -19,7 +19,7 @@ struct RowSums {
   /// Adds a run. Returns whether its inner edge is in the sums, too.
   bool add(const CalibrationRun& run) {
     if (run.is_failure()) return false;
-    INCISE_REQUIRE(run.paper_abs_error_mm && run.signed_error_mm, "expected errors of every run that is no failure");
+    INCISE_REQUIRE(run.paper_abs_error_mm && run.signed_error_mm, "expected errors of every run that did not fail");
     count += 1.0;
     mean += run.paper_abs_error_mm->mean;
     sd += run.paper_abs_error_mm->sd;

@@ -64,12 +64,12 @@ std::optional<std::string> Cache::payload(const std::string& slot, const CacheKe
     const std::string_view all = *entry;
     const std::size_t start = kCacheMagic.size() + 2 * (kDigits + 1);
     if (all.size() < start || !all.starts_with(kCacheMagic))
-      throw DataError(store_->place_of(slot), "byte 0", "something else", "an entry of a cache");
+      throw DataError(store_->place_of(slot), "byte 0", "something else", "an entry of the cache");
     if (all.substr(kCacheMagic.size(), kDigits) != key.digest()) return std::nullopt;
     const std::string_view payload = all.substr(start);
     if (all.substr(0, start) != header_of(key, payload))
       throw DataError(store_->place_of(slot), fmt::format("byte {}", start), "bytes that were changed",
-                      "those that were kept");
+                      "the bytes that were stored");
     return std::string(payload);
   } catch (const DataError& damaged) {
     report_damage(damaged, monitor);

@@ -42,7 +42,7 @@ void Visitor::refuse(const Field& field, const std::string& found, const std::st
 std::size_t Visitor::key(std::size_t& place, std::span<const Field> keys) {
   std::vector<std::string_view> names;
   for (const Field& key : keys) names.push_back(key.name);
-  choice(Field{"kind", "Which of the keys it is."}, place, names);
+  choice(Field{"kind", "Which of the keys is given."}, place, names);
   return 1;
 }
 

@@ -78,7 +78,7 @@ void ByteWriter::block(const Field&, const Block& block) {
 
 std::string_view ByteReader::take(const Field& field, std::size_t count) {
   last_ = at_;
-  if (bytes_.size() - at_ < count) refuse(field, "the end of the bytes", fmt::format("{} more", count));
+  if (bytes_.size() - at_ < count) refuse(field, "the end of the data", fmt::format("{} more bytes", count));
   at_ += count;
   return bytes_.substr(last_, count);
 }

@@ -44,7 +44,7 @@ class KeyWatch {
   bool operator()(int depth, ordered_json::parse_event_t event, ordered_json& parsed) {
     if (depth > kDeepestJson)
       throw DataError(name_, "", fmt::format("values nested more than {} deep", kDeepestJson),
-                      "JSON that is less deep");
+                      "JSON with less nesting");
     if (event == ordered_json::parse_event_t::object_start) keys_.emplace_back();
     if (event == ordered_json::parse_event_t::object_end) keys_.pop_back();
     if (event == ordered_json::parse_event_t::key && !keys_.back().insert(parsed.get<std::string>()).second) {

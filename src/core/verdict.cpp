@@ -18,12 +18,7 @@ constexpr std::size_t kMostReasons = 1000;
 
 // The one table of limits. Change it together with docs/models/verdict.md.
 constexpr auto kRules = std::to_array<VerdictRule>({
-    {"outcome",
-     kRefused,
-     {},
-     "",
-     "",
-     "The simulated cut ended in anything but success, or nothing of it could be measured."},
+    {"outcome", kRefused, {}, "", "", "The simulated cut did not succeed, or it left nothing to measure."},
     {"tumor_distance", kRefused, kCloseMarginMm, ">", "mm",
      "Smallest distance from the simulated kerf to the tumour's surface, in any direction."},
     {"lateral_margin", kRefused, kCloseMarginMm, ">", "mm",
@@ -56,8 +51,7 @@ constexpr auto kRules = std::to_array<VerdictRule>({
     {"heat", kCaution, 0.0, ">=", "mm", "Tissue left unheated between the simulated cut and the tumour's edge."},
     {"simulated_margin", kCaution, kCloseMarginMm, ">", "mm",
      "Least tissue that the simulated cut alone leaves beside the tumour's edge, where `compensation` expects real "
-     "cuts "
-     "to leave enough."},
+     "cuts to leave enough."},
     {"painted_skin",
      kCaution,
      {},
@@ -90,7 +84,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "",
-     "The cut was simulated by another rule than the usual one (`cut.rule`), with whose cuts nothing was compared."},
+     "The cut was simulated by a rule other than the default (`cut.rule`). Cuts by that rule were compared with "
+     "nothing."},
     // Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
     {"mesh_resolution", kCaution, 1.5, "<=", "mm", "Mean edge length of the mesh along the path."},
     {"locking", kCaution, 0.49, "<=", "", "Poisson's ratio, where each tetrahedron keeps its own volume."},
@@ -109,8 +104,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "mm",
-     "Length of a closed red ring that may be an opening: it looks unlike the rest, as blood does, or is unseen and "
-     "slightly longer than allowed."},
+     "Length of a part of a closed red ring that may be an opening: it looks unlike the rest, as blood does, or is "
+     "unseen and slightly longer than allowed."},
     {"scan",
      kCaution,
      {},
@@ -149,26 +144,26 @@ void Verdict::add(std::string_view id, std::optional<double> value, std::string 
 }
 
 void describe(Visitor& v, VerdictReason& reason) {
-  v("id", reason.id, "Of its rule in the table of limits.");
+  v("id", reason.id, "Id of its rule in the table of limits.");
   const auto rule = std::find_if(kRules.begin(), kRules.end(), [&](const VerdictRule& r) { return r.id == reason.id; });
   if (v.sets() && rule == kRules.end())
     v.refuse({"id"}, "'" + reason.id.substr(0, kShownCharacters) + "'", "the id of a rule of the verdict");
-  v("severity", reason.severity, "That of its rule.");
+  v("severity", reason.severity, "Severity of its rule.");
   if (v.sets() && reason.severity != rule->severity) {
     v.refuse({"severity"}, std::string(to_string(reason.severity)), std::string(to_string(rule->severity)));
   }
-  v("value", reason.value, "What was found.");
-  v("limit", reason.limit, "The limit that it was compared with.");
-  v("unit", reason.unit, "Of both.");
-  v("at", reason.at, "Where.");
+  v("value", reason.value, "The value that was found.");
+  v("limit", reason.limit, "The limit that the value was compared with.");
+  v("unit", reason.unit, "Unit of value and limit.");
+  v("at", reason.at, "Place of the reason.");
   v("message", reason.message, "One sentence for a person.");
 }
 
 void describe(Visitor& v, Verdict& verdict) {
   VerdictStatus status = verdict.status();
-  if (v.is_summary()) v("status", status, "That of the worst reason.");
+  if (v.is_summary()) v("status", status, "Severity of the worst reason.");
   std::vector<VerdictReason> reasons = verdict.reasons_;
-  v("reasons", reasons, "Worst first.");
+  v("reasons", reasons, "Objections to the cut, worst first.");
   if (!v.sets()) return;
   if (reasons.size() > kMostReasons)
     v.refuse({"reasons"}, fmt::format("{} reasons", reasons.size()), fmt::format("at most {}", kMostReasons));
@@ -176,7 +171,7 @@ void describe(Visitor& v, Verdict& verdict) {
   for (VerdictReason& reason : reasons) verdict.add(std::move(reason));
   if (v.is_summary() && status != verdict.status()) {
     v.refuse({"status"}, std::string(to_string(status)),
-             fmt::format("{}, that of the worst reason", to_string(verdict.status())));
+             fmt::format("{}, the severity of the worst reason", to_string(verdict.status())));
   }
 }
 

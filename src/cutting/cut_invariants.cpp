@@ -66,11 +66,11 @@ std::vector<std::uint8_t> check_record(const TissueModel& model, const CutState&
                    "record: entry {} (step {}, tet {}) does not follow the one before it (step {}, tet {})", i, r.step,
                    r.tet.value, removals[i > 0 ? i - 1 : 0].step, removals[i > 0 ? i - 1 : 0].tet.value);
     const bool is_ahead = !(r.step >= 0 && r.step <= state.step && r.time_s >= 0.0 && r.time_s <= state.time_s);
-    violations.add(is_ahead, ahead, "record: entry {} is of step {}, {} s; the cut is at step {}, {} s", i, r.step,
+    violations.add(is_ahead, ahead, "record: entry {} is from step {}, {} s; the cut is at step {}, {} s", i, r.step,
                    r.time_s, state.step, state.time_s);
     const double held_mm3 = rest_volume_mm3(model, state.splits, r.tet);
     violations.add(!(std::abs(r.rest_volume_mm3 - held_mm3) <= 1e-12 * held_mm3), volume,
-                   "record: tet {} has a rest volume of {} mm³, recorded are {} mm³", r.tet.value, held_mm3,
+                   "record: tet {} has a rest volume of {} mm³, the record says {} mm³", r.tet.value, held_mm3,
                    r.rest_volume_mm3);
   }
   return times_removed;
@@ -82,8 +82,9 @@ void check_balance(const TissueModel& model, const CutState& state, std::span<co
   double live_mm3 = 0.0, uncut_mm3 = 0.0;
   for (std::size_t tet = 0; tet < times_removed.size(); ++tet) {
     const bool is_live = state.tissue.is_live[tet] != 0;
-    violations.add(!is_live && times_removed[tet] == 0, gone, "record: tet {} is gone and not in the record", tet);
-    violations.add(is_live && times_removed[tet] != 0, alive, "record: tet {} is in the record and live", tet);
+    violations.add(!is_live && times_removed[tet] == 0, gone, "record: tet {} was removed but is not in the record",
+                   tet);
+    violations.add(is_live && times_removed[tet] != 0, alive, "record: tet {} is live but is in the record", tet);
     const double held_mm3 = rest_volume_mm3(model, state.splits, TetId(tet));
     if (is_live) live_mm3 += held_mm3;
     uncut_mm3 += tet + state.splits.copies.size() < times_removed.size() ? model.volumes_mm3[tet] : 0.0;
@@ -103,8 +104,10 @@ void check_positions(const TissueModel& model, const CutState& state, Violations
   for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
     const double dose = state.dose[tet];
     const double torn = state.tear_dose[tet];
-    violations.add(!(std::isfinite(dose) && torn >= 0.0 && torn <= dose), dosed, "dose: tet {} has {}, of which {} by tearing", tet, dose,
-                   torn);
+    violations.add(!(std::isfinite(dose) && torn >= 0.0 && torn <= dose), dosed,
+                   "dose: tet {} has {}, of which {} "
+                   "from tearing",
+                   tet, dose, torn);
     if (state.tissue.is_live[tet] == 0) continue;
     for (const VertexId v : model.mesh.tets[tet]) {
       violations.add(!state.tissue.positions[v.index()].allFinite(), position,
@@ -138,7 +141,8 @@ void check_bonds(const TissueModel& model, const CutState& state, Violations& vi
     violations.add(is_unknown, unknown, "bonds: entry {} names tet {}, expected one of {}", i, bond.tet.value,
                    model.mesh.tets.size());
     if (is_unknown) continue;
-    violations.add(state.tissue.is_live[bond.tet.index()] == 0, dead, "bonds: tet {} is held and gone", bond.tet.value);
+    violations.add(state.tissue.is_live[bond.tet.index()] == 0, dead, "bonds: tet {} is held but was removed",
+                   bond.tet.value);
     violations.add(i > 0 && !(state.bonds[i - 1].tet < bond.tet), disordered, "bonds: tet {} does not follow tet {}",
                    bond.tet.value, state.bonds[i > 0 ? i - 1 : 0].tet.value);
     violations.add(!bond.offset_mm.allFinite(), offset, "bonds: the offset of tet {} is not finite", bond.tet.value);
@@ -152,9 +156,9 @@ std::string find_problem(const TissueModel& whole, const CutState& state) {
     require_splits_of(whole.mesh, state.splits);
     lattice_of(whole, state.points).require_own_tets(state.points, state.splits, whole.mesh.tets.size());
     for (const std::int32_t step : state.points.parted_step)
-      INCISE_REQUIRE(
-          step >= -1 && step <= state.step,
-          fmt::format("points: expected a step up to {} in which one parted, or -1, found {}", state.step, step));
+      INCISE_REQUIRE(step >= -1 && step <= state.step,
+                     fmt::format("points: expected the step in which a point parted, up to {}, or -1, found {}",
+                                 state.step, step));
     for (const double dose : state.points.dose)
       INCISE_REQUIRE(dose >= 0.0 && std::isfinite(dose),
                      fmt::format("points: expected a dose of 0 or more, found {}", dose));

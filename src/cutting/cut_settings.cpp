@@ -36,12 +36,11 @@ std::vector<Problem> validate(const CutSettings& s, double tool_diameter_mm) {
     }
   }
   if (s.rule == CutRule::Lattice && s.tear_energy_kpa) {
-    violations.push_back({"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none where points carry the cut"});
+    violations.push_back({"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none with rule lattice"});
   }
   if (s.rule == CutRule::Paper) {
     if (s.tear_energy_kpa)
-      violations.push_back(
-          {"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none where steps of contact are counted"});
+      violations.push_back({"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none with rule paper"});
     if (!(s.advance_mm() <= tool_diameter_mm))
       violations.push_back(
           {"reference_step_s",

@@ -309,7 +309,7 @@ class Divider {
     if (state_.points.parted_step[near] >= 0) return state_.points.parted_step[near];
     const Points& rest = whole_.mesh.vertices;
     const auto step = doses_.parted_step_near(0.5 * (vertex(rest, place.first) + vertex(rest, place.second)));
-    INCISE_REQUIRE(step.has_value(), "points: expected a step for each that is parted, found a dose of 1 without one");
+    INCISE_REQUIRE(step.has_value(), "points: expected a step for each parted point, found a dose of 1 without a step");
     return *step;
   }
 

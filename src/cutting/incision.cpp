@@ -135,7 +135,7 @@ class IncisionRun {
     }
     monitor_.message(
         Severity::Warning,
-        fmt::format("the tissue is not at rest {} steps after the tool is out: the inner edge may still move",
+        fmt::format("the tissue is not at rest {} steps after the tool came out: the inner edge may still move",
                     kMaxRelaxationSteps));
     return Outcome::Success;
   }
@@ -148,8 +148,8 @@ class IncisionRun {
   [[nodiscard]] CutState& state() { return progress_.state; }
   Outcome broken_off() {
     monitor_.message(Severity::Warning,
-                     fmt::format("the cut ends at {:.3f} s, in step {}: positions are no longer finite. What was cut "
-                                 "until then is no result",
+                     fmt::format("the cut ends at {:.3f} s, in step {}: positions are no longer finite. Do not use "
+                                 "what was cut until then",
                                  state().time_s, progress_.steps.size()));
     return Outcome::NotConverged;
   }
@@ -180,8 +180,8 @@ class IncisionRun {
         model_.mesh.vertices.size(), tets, model_.material.volume, settings_.frames, viscous_terms(model_.material)));
     monitor_.message(
         Severity::Notice,
-        fmt::format("cutting {} tets in {} steps and at most {} until they are at rest, with about {:.0f} MB", tets,
-                    steps_left(), kMaxRelaxationSteps - progress_.relaxation_steps, bytes / 1e6));
+        fmt::format("cutting {} tets in {} steps, then at most {} more until they are at rest, with about {:.0f} MB",
+                    tets, steps_left(), kMaxRelaxationSteps - progress_.relaxation_steps, bytes / 1e6));
   }
 
   /// Reports the estimated duration after kStepsToTellFrom steps.
@@ -189,7 +189,7 @@ class IncisionRun {
     if (progress_.state.step != first_step_ + kStepsToTellFrom) return;
     const double per_step_s = (wall_s() - earlier_wall_s_) / kStepsToTellFrom;
     monitor_.message(Severity::Notice,
-                     fmt::format("cutting: takes about {:.0f} s", per_step_s * (kStepsToTellFrom + steps_left())));
+                     fmt::format("cutting takes about {:.0f} s", per_step_s * (kStepsToTellFrom + steps_left())));
   }
 
   CutStepReport step(const std::optional<ToolPose>& next, double dt) {
@@ -232,9 +232,8 @@ void tell_missing_frames(const IncisionSettings& settings, Outcome outcome, cons
   if (outcome != Outcome::Success || kept >= static_cast<std::size_t>(settings.frames)) return;
   monitor.message(
       Severity::Warning,
-      fmt::format("{} frames in place of {}: the cut took no more than {} steps with the tool in, and keeps one frame "
-                  "a step at most. "
-                  "A smaller advance_per_step_mm gives more",
+      fmt::format("{} frames instead of {}: the cut took only {} steps with the tool in, and keeps at most one frame "
+                  "per step. A smaller advance_per_step_mm gives more",
                   kept, settings.frames, progress.steps.size() - static_cast<std::size_t>(progress.relaxation_steps)));
 }
 

@@ -119,7 +119,8 @@ void PointLattice::require_own_tets(const CutPoints& points, const MeshSplits& s
   for (std::size_t i = 0; i < tets_.size(); ++i) {
     const TetId tet = points.tet_of[i];
     const bool is_own = tet.is_valid() && tet.index() < count && whole_of(tet) == whole_of(tets_[i]);
-    INCISE_REQUIRE(is_own, fmt::format("points: expected point {} in its tet or a copy of it, found {}", i, tet.value));
+    INCISE_REQUIRE(is_own,
+                   fmt::format("points: expected point {} in its tet or in a copy of it, found tet {}", i, tet.value));
   }
 }
 
@@ -131,7 +132,7 @@ PointLattice lattice_of(const TissueModel& whole, const CutPoints& points) {
   for (const std::size_t found : {points.tet_of.size(), points.dose.size(), points.is_held.size(),
                                   points.offset_mm.size(), points.parted_step.size(), points.parted_mm.size()}) {
     INCISE_REQUIRE(found == lattice.size(),
-                   fmt::format("points: expected {} of everything, found {}", lattice.size(), found));
+                   fmt::format("points: expected {} items in every list, found {}", lattice.size(), found));
   }
   return lattice;
 }

@@ -67,7 +67,9 @@ std::optional<double> radius_of(double level) {
   if (log_peak(low) <= level) return std::nullopt;
   double high = 1.0;
   for (int i = 0; log_peak(high) > level; ++i) {
-    INCISE_REQUIRE(i < kMaxDoublings, "expected a power, speed and depth for which tissue cools somewhere below the temperature of damage");
+    INCISE_REQUIRE(i < kMaxDoublings,
+                   "expected a power, speed and depth for which some tissue stays below the "
+                   "temperature of damage");
     high *= 2.0;
   }
   for (int i = 0; i < kMaxBisections && high > low * (1.0 + 1e-14); ++i) {

@@ -39,10 +39,10 @@ void dimension(Visitor& v, std::string_view tool, const Field& field, double* va
 
 void dimensions(Visitor& v, std::string_view tool, double* diameter_mm, double* length_mm, double* thickness_mm,
                 double* width_mm) {
-  dimension(v, tool, {"diameter_mm", "Of needle or ball.", "mm"}, diameter_mm, {0.05, 10.0});
-  dimension(v, tool, {"length_mm", "Of needle or blade, from its tip.", "mm"}, length_mm, {0.0, 200.0, true});
-  dimension(v, tool, {"thickness_mm", "Of a blade; 0.5 unless given.", "mm"}, thickness_mm, {0.05, 10.0});
-  dimension(v, tool, {"width_mm", "Of a blade, in the direction of travel; 2.4 unless given.", "mm"}, width_mm,
+  dimension(v, tool, {"diameter_mm", "Diameter of a needle or ball.", "mm"}, diameter_mm, {0.05, 10.0});
+  dimension(v, tool, {"length_mm", "Length of a needle or blade, from its tip.", "mm"}, length_mm, {0.0, 200.0, true});
+  dimension(v, tool, {"thickness_mm", "Thickness of a blade; 0.5 unless given.", "mm"}, thickness_mm, {0.05, 10.0});
+  dimension(v, tool, {"width_mm", "Width of a blade, in the direction of travel; 2.4 unless given.", "mm"}, width_mm,
             {0.05, 50.0});
 }
 
@@ -59,7 +59,7 @@ void describe_dimensions(Visitor& v, Ball& t) {
 }  // namespace
 
 void describe(Visitor& v, Tool& tool) {
-  v.kind({"kind", "A needle, a blade that is led edge first, or a ball."}, tool);
+  v.kind({"kind", "A needle, a blade that moves edge first, or a ball."}, tool);
   std::visit([&v](auto& t) { describe_dimensions(v, t); }, tool);
 }
 

@@ -112,7 +112,7 @@ LevelLoop trace_level_loop(const std::function<double(const Vec2&)>& field, cons
   INCISE_REQUIRE(std::isfinite(reach_mm) && reach_mm > 0.0,
                  fmt::format("expected a reach above 0 mm, found {}", reach_mm));
   Grid grid(field, inside, step_mm);
-  INCISE_REQUIRE(grid.is_inside({0, 0}), "the function is not negative at the point that is said to lie inside");
+  INCISE_REQUIRE(grid.is_inside({0, 0}), "the function is not negative at the point given as inside");
 
   // Search from the end of the reach inwards, along -x: the first border found is the outermost one.
   int column = static_cast<int>(std::ceil(reach_mm / step_mm)) + 1;

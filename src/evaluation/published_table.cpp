@@ -68,23 +68,23 @@ std::string to_text(const Finding& finding) {
     case AuditRule::NegativeSd:
       return say("sd {found:g} is negative");
     case AuditRule::MaxBelowMean:
-      return say("max {found:g} lies below the mean, at least {bound:.4g}");
+      return say("max {found:g} lies below the mean, which is at least {bound:.4g}");
     case AuditRule::MinAboveMean:
-      return say("min {found:g} lies above the mean, at most {bound:.4g}");
+      return say("min {found:g} lies above the mean, which is at most {bound:.4g}");
     case AuditRule::SdTooLarge:
       return say("sd {found:g} is more than mean and max allow, {bound:.4g}");
     case AuditRule::SdTooSmall:
-      return say("sd {found:g} is less than the greatest value alone makes, {bound:.4g}");
+      return say("sd {found:g} is less than the greatest value alone causes, {bound:.4g}");
     case AuditRule::MeanTooSmall:
-      return say("mean {found:g} is less than the greatest value alone makes, {bound:.4g}");
+      return say("mean {found:g} is less than the greatest value alone causes, {bound:.4g}");
     case AuditRule::MeanNotOnGrain:
       return say("mean {found:g} cannot be the mean of n such values; the nearest possible: {bound:.6g}");
     case AuditRule::PooledMeanOutside:
-      return say("pooled mean {found:g} lies outside its parts, whose nearest reaches {bound:.4g}");
+      return say("pooled mean {found:g} lies outside the means of its parts; the nearest reaches {bound:.4g}");
     case AuditRule::PooledMeanOff:
-      return say("pooled mean {found:g} is not the mean of its parts by their n, whose nearest is {bound:.4g}");
+      return say("pooled mean {found:g} is not the mean of its parts weighted by n; the nearest is {bound:.4g}");
     case AuditRule::PooledNOff:
-      return say("pooled n {found:g} is not what its parts add up to, {bound:g}");
+      return say("pooled n {found:g} is not the sum of its parts, {bound:g}");
     case AuditRule::PooledSdTooLarge:
       return say("pooled sd {found:g} is more than its parts allow, {bound:.4g}");
     case AuditRule::PooledSdTooSmall:
@@ -92,7 +92,7 @@ std::string to_text(const Finding& finding) {
     case AuditRule::ScoreOffBaseline:
       break;
   }
-  return say("score {found:g} % does not follow from mean, max and the baseline: nearest {bound:.4g} %");
+  return say("score {found:g} % does not follow from mean, max and the baseline; the nearest is {bound:.4g} %");
 }
 
 Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings) {

@@ -154,7 +154,7 @@ void require_finite(const ScalarRaster& raster) {
 
 std::vector<Contour> level_lines(const ScalarRaster& raster, double level, double outside) {
   INCISE_REQUIRE(std::isfinite(level) && std::isfinite(outside) && outside < level,
-                 fmt::format("expected a value outside below the level, found {} and {}", outside, level));
+                 fmt::format("expected an outside value below the level, found {} and {}", outside, level));
   require_finite(raster);
   return Tracer(raster, level, outside).run();
 }

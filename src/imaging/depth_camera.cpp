@@ -68,7 +68,7 @@ Vec3 ray_through(const CameraIntrinsics& camera, const Vec2& pixel) {
     if (rest.norm() < 1e-12) return p.homogeneous();
   }
   INCISE_REQUIRE((seen - distorted(camera, p)).norm() < 1e-6,
-                 fmt::format("a distortion that cannot be undone at pixel ({:.1f}, {:.1f})", pixel.x(), pixel.y()));
+                 fmt::format("the distortion cannot be undone at pixel ({:.1f}, {:.1f})", pixel.x(), pixel.y()));
   return p.homogeneous();
 }
 
@@ -141,10 +141,9 @@ void require_camera_frame(const OrganizedCloud& cloud, const std::filesystem::pa
     }
   }
   if (mirrored > as_seen) {
-    throw DataError(
-        name, "vertices",
-        fmt::format("columns and rows that run as in a mirror at {} of {} places", mirrored, mirrored + as_seen),
-        "columns to the right and rows downwards, as the camera sees them", kHint);
+    throw DataError(name, "vertices",
+                    fmt::format("mirrored columns and rows at {} of {} places", mirrored, mirrored + as_seen),
+                    "columns to the right and rows downwards, as the camera sees them", kHint);
   }
 }
 

@@ -177,12 +177,11 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
   const std::string none = fmt::format("no {} line", to_string(color));
   const std::string expected = fmt::format("a {} line on the tissue", to_string(color));
   if (!map.is_present) {
-    refuse(
-        name,
-        fmt::format("{} (the strongest {} is {:.3f} above its surroundings)", none, to_string(color), map.contrast),
-        expected,
-        fmt::format("Brown, black or faint lines are not seen: draw it {}, and thicker.",
-                    color == InkColor::Red ? "bright red" : "bright green"));
+    refuse(name,
+           fmt::format("{} (the strongest {} is {:.3f} above its surroundings)", none, to_string(color), map.contrast),
+           expected,
+           fmt::format("Brown, black and faint lines are not detected: draw the line {} and thicker.",
+                       color == InkColor::Red ? "bright red" : "bright green"));
   }
   Start start = start_of(mask, color, settings, name);
   if (start.line.size() < 2 || length_px(start.line, start.is_ring) * settings.mm_per_pixel < kLeastLineMm) {

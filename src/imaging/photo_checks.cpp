@@ -188,7 +188,8 @@ std::vector<Enclosed> enclosed_places(const CheckedLine& checked, const Crop& cr
                   fmt::format("a {0} mark of {1:.1f} mm inside the {0} ring, at pixel {2:.0f}, {3:.0f}", color,
                               longest * checked.mm_per_pixel, middles.at<double>(largest, 0) + crop.corner.x,
                               middles.at<double>(largest, 1) + crop.corner.y),
-                  fmt::format("no {} there but the ring", color), "A second cut? Paint over it if it is none");
+                  fmt::format("nothing {} there except the ring", color),
+                  "A second cut? If it is not one, paint over it");
 }
 
 }  // namespace
@@ -219,7 +220,7 @@ void require_nothing_else(const CheckedLine& checked) {
   if (share <= kMostElse) return;
   throw DataError(
       checked.name, "",
-      fmt::format("much {0} beside the {0} ring ({1:.0f} % of it)", to_string(checked.color), 100.0 * share),
+      fmt::format("much {0} beside the {0} ring ({1:.0f} % of that colour)", to_string(checked.color), 100.0 * share),
       "one simple ring", "A second line, or one that crosses itself? Something else of that colour?");
 }
 
@@ -278,8 +279,8 @@ void require_no_large_mark(const CheckedLine& checked, const std::vector<PhotoMa
   throw DataError(checked.name, "",
                   fmt::format("a {} mark of {:.1f} mm {}, at pixel {:.0f}, {:.0f}", to_string(checked.color),
                               mark.longest_mm, place, mark.at_px.x(), mark.at_px.y()),
-                  fmt::format("no {} there but the ring", to_string(checked.color)),
-                  "A second cut or tumour? Paint over it if it is neither");
+                  fmt::format("nothing {} there except the ring", to_string(checked.color)),
+                  "A second cut or tumour? If it is neither, paint over it");
 }
 
 cv::Mat faint_ink(const InkMap& map, const std::vector<Vec2>& within) {

@@ -45,12 +45,12 @@ void add_worst(const std::array<Finding, N>& findings, const char* id, const cha
 void add_ruler_doubts(const Ruler& ruler, Verdict& verdict) {
   if (ruler.error_percent > *verdict_rule("photo_scale").limit) {
     verdict.add("photo_scale", ruler.error_percent,
-                fmt::format("the scale is known to {:.1f} % only", ruler.error_percent));
+                fmt::format("the scale is known only to {:.1f} %", ruler.error_percent));
   }
   if (!ruler.shape) return;
   const RulerShape& shape = *ruler.shape;
   add_worst<3>({{{shape.spacing_change,
-                  fmt::format("the ruler's ticks change their spacing by {:.1f} % from one end to the other",
+                  fmt::format("the spacing of the ruler's ticks changes by {:.1f} % from one end to the other",
                               100.0 * std::abs(shape.spacing_change.value))},
                  {share_of_angle(shape.convergence_deg),
                   fmt::format("the ruler's first and last tick are {:.1f} degrees from parallel",
@@ -69,19 +69,18 @@ void add_ruler_doubts(const Ruler& ruler, Verdict& verdict) {
 void add_ring_doubts(const PhotoContours& contours, double max_gap_mm, Verdict& verdict) {
   if (!contours.red.is_closed) return;
   if (const double gap_mm = contours.red.max_gap_mm(); gap_mm > max_gap_mm) {
-    verdict.add(
-        "photo_ring", gap_mm,
-        fmt::format("the red ring is taken as closed although it is not seen for {:.2f} mm, more than {:g}: such "
-                    "a gap cannot be distinguished from one of {:g}",
-                    gap_mm, max_gap_mm, max_gap_mm));
+    verdict.add("photo_ring", gap_mm,
+                fmt::format("the red ring is treated as closed although it is not seen for {:.2f} mm, more than {:g}: "
+                            "such a gap cannot be distinguished from one of {:g}",
+                            gap_mm, max_gap_mm, max_gap_mm));
   }
   if (!contours.odd_stretch) return;
   const OddStretch& odd = *contours.odd_stretch;
   verdict.add(
       "photo_ring", odd.length_mm,
       fmt::format(
-          "the red ring is closed by {:.2f} mm at pixel {:.0f}, {:.0f} that are unlike the rest of it ({}): blood "
-          "over an opening?",
+          "the red ring is closed by a stretch of {:.2f} mm at pixel {:.0f}, {:.0f} that is unlike its other parts "
+          "({}): blood over an opening?",
           odd.length_mm, odd.at_px.x(), odd.at_px.y(), odd.what),
       VerdictPlace{{}, {}, fmt::format("pixel {:.0f}, {:.0f}", odd.at_px.x(), odd.at_px.y())});
 }

@@ -158,7 +158,8 @@ constexpr std::array<int, 2> kWindows{31, 81};
 
 std::string text_of(const Comb& comb) {
   const Vec2& at = comb.ticks[comb.ticks.size() / 2].center;
-  return fmt::format("{} of {:.2f} pixels at pixel {:.0f}, {:.0f}", comb.ticks.size(), comb.spacing_px, at.x(), at.y());
+  return fmt::format("{} ticks {:.2f} pixels apart at pixel {:.0f}, {:.0f}", comb.ticks.size(), comb.spacing_px, at.x(),
+                     at.y());
 }
 
 /// Refuses two spacings: `--ruler-mm` is the distance between the finest ticks, and which ones are meant is unknown.
@@ -169,7 +170,7 @@ void require_one_spacing(const std::vector<CountedRow>& rows, const std::filesys
         name, "",
         fmt::format("a ruler whose ticks have two spacings ({}, and {})", text_of(first.comb),
                     first.off_place >= kOffPlace ? fmt::format("{} between them", first.off_place)
-                                                 : fmt::format("{} or more steps of several such", kCoarseRun)),
+                                                 : fmt::format("{} or more steps of several spacings", kCoarseRun)),
         "ticks of one spacing in view", kTwoScalesHint);
   }
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -190,8 +191,8 @@ void require_no_finer_ticks(const ColorPicture& picture, const Comb& comb, const
   throw DataError(name, "",
                   fmt::format("fainter marks between a ruler's ticks ({}), at {:.2f} of their spacing", text_of(comb),
                               finer->share),
-                  "a ruler whose finest ticks are all seen",
-                  "Take the photograph sharper or nearer, or give the scale with two ticks of known distance: "
+                  "a ruler whose finest ticks are all clear",
+                  "Take a sharper or closer photograph, or give the scale with two ticks of known distance: "
                   "--two-points.");
 }
 
@@ -218,7 +219,7 @@ Ruler ruler_of_ticks(const ColorPicture& picture, std::optional<double> length_m
   require_no_finer_ticks(picture, *best, name);
   if (!length_mm && every_second_is_longer(*best)) {
     throw DataError(name, "", fmt::format("a ruler of which every second tick is longer ({})", text_of(*best)),
-                    "ticks of millimetres, or their distance given",
+                    "millimetre ticks, or a given distance between ticks",
                     "Are they half millimetres, or parts of an inch? Give the distance of its finest ticks: "
                     "--ruler-mm 0.5.");
   }

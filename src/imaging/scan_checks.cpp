@@ -85,8 +85,8 @@ Verdict check_scan(const CtVolume& ct) {
   const std::optional<double> air = air_peak_hu(ct);
   if (air && std::abs(*air - kAirHounsfield) > kAirPeakTolerance) {
     verdict.add("scan", *air,
-                fmt::format("the air in the scan is at {:.0f} HU, not near {:.0f}: its values have another offset or scale than Hounsfield units, and "
-                            "the tissue's window does not fit them",
+                fmt::format("the air in the scan is at {:.0f} HU, not near {:.0f}: the scan's offset or scale differs "
+                            "from that of Hounsfield units, and the tissue's window does not fit it",
                             *air, kAirHounsfield),
                 {}, kAirHounsfield);
   }
@@ -96,9 +96,11 @@ Verdict check_scan(const CtVolume& ct) {
       const double height_mm = ct.grid.world_from_index(Vec3(0, 0, odd.slice)).z();
       verdict.add("scan", odd.step_hu,
                   fmt::format("slice {} of the scan (z {:.1f} mm) differs by {:+.0f} HU from its neighbours: it has "
-                              "its own intercept, or is of another scan",
+                              "its own intercept, or belongs to another scan",
                               odd.slice, height_mm, odd.step_hu),
-                  VerdictPlace{{}, ct.grid.world_from_index(Vec3(0.5 * ct.grid.size[0], 0.5 * ct.grid.size[1], odd.slice)), fmt::format("slice {}", odd.slice)},
+                  VerdictPlace{{},
+                               ct.grid.world_from_index(Vec3(0.5 * ct.grid.size[0], 0.5 * ct.grid.size[1], odd.slice)),
+                               fmt::format("slice {}", odd.slice)},
                   kSliceStepTolerance);
     }
   }

@@ -139,7 +139,7 @@ void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, con
   result.verdict.add(
       "scan", share,
       fmt::format("the scan shows two bodies that may be the specimen: {:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm, "
-                  "which is kept as the largest, and "
+                  "which is kept because it is larger, and "
                   "{:.4g} mm³ round ({:.1f}, {:.1f}, {:.1f}) mm. Name the specimen by a point inside it (seed_mm)",
                   kept_mm3, kept.x(), kept.y(), kept.z(), rival_mm3, other.x(), other.y(), other.z()),
       VerdictPlace{{}, other, "the body that is left out"}, kLeastRivalShare);
@@ -195,7 +195,7 @@ Mask at_least_half(const GrayVolume& occupancy) {
 [[noreturn]] void refuse_smoothing(double smoothing_mm) {
   throw CaseError("segmentation", "smoothing_mm", fmt::format("{:g}, which leaves nothing of the body", smoothing_mm),
                   "a length shorter than the body is thick",
-                  "About a voxel's longest side that the body spans is enough; 0: none.");
+                  "About the longest side of a voxel that the body spans is enough; 0: no smoothing.");
 }
 
 // Reduces the occupancy to one piece above 0.5: removes crumbs beside the body and, if asked, closes cavities in it.
@@ -254,8 +254,8 @@ void note_lost_volume(double sharp_mm3, Segmentation& result) {
   const double share = std::abs(result.occupancy_volume_mm3 - sharp_mm3) / std::max(result.occupancy_volume_mm3, sharp_mm3);
   if (!(result.smoothing_mm > 0.0) || !(share > kMostShare)) return;
   result.verdict.add("scan", share,
-                     fmt::format("smoothing over {:g} mm changes the specimen's volume by {:.1f} %: it is too long for a body so small or thin. A shorter "
-                                 "smoothing_mm (about a voxel) keeps the shape",
+                     fmt::format("smoothing over {:g} mm changes the specimen's volume by {:.1f} %: that is too long "
+                                 "for so small or thin a body. A shorter smoothing_mm (about a voxel) keeps the shape",
                                  result.smoothing_mm, 100.0 * share));
 }
 
@@ -274,7 +274,7 @@ void describe(Visitor& v, SegmentationSettings& s) {
   }
   v({"seed_mm", "A point inside the specimen (LPS); absent: the largest piece is taken.", "mm"}, seed);
   v.internal("other_seeds_mm", others, "More points in the same piece.");
-  v({"opening_radius_mm", "Pieces joined only by bridges thinner than twice this are separated.", "mm"},
+  v({"opening_radius_mm", "Pieces joined only by bridges thinner than twice this radius are separated.", "mm"},
     s.opening_radius_mm, {0.0, 20.0});
   v.internal("fill_holes", s.fill_holes, "Whether cavities without a way out become tissue.");
   v({"smoothing_mm",
@@ -283,8 +283,8 @@ void describe(Visitor& v, SegmentationSettings& s) {
      "mm"},
     s.smoothing_mm, {0.0, 5.0});
   v("label_values", s.label_values, "Which values in `labels` are tissue; absent: all but 0.", {1.0, 255.0});
-  v({"edits", "Strokes of a brush for what the window gets wrong, in their order; absent: none.", "mm"}, s.edits);
-  v.internal("margin_voxels", s.margin_voxels, "Of air around the body.", {3.0, 50.0});
+  v({"edits", "Brush strokes that correct what the window gets wrong, in order; absent: none.", "mm"}, s.edits);
+  v.internal("margin_voxels", s.margin_voxels, "Voxels of air around the body.", {3.0, 50.0});
   if (!v.sets()) return;
   s.window_low_hu = window[0];
   s.window_high_hu = window[1];

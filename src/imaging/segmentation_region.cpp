@@ -191,7 +191,7 @@ std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& w
       const bool is_tissue = hu >= settings.window_low_hu && hu <= settings.window_high_hu;
       throw CaseError(
           kWhere, field, fmt::format("{} with {} HU", text_of(seed), hu),
-          is_tissue ? std::string("a point that no stroke of `edits` takes away")
+          is_tissue ? std::string("a point that no stroke of `edits` removes")
                     : fmt::format("tissue in window_hu [{:g}, {:g}]", settings.window_low_hu, settings.window_high_hu));
     }
     offsets.push_back(work.hu.grid.offset(at[0], at[1], at[2]));

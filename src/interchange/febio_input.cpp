@@ -79,7 +79,7 @@ class FebioInput {
       add_comment(root,
                   "DIFFERS: FEBio has no corotational law. 'isotropic elastic' (Saint Venant and Kirchhoff: second "
                   "Piola-Kirchhoff stress "
-                  "linear in Green-Lagrange strain) is nearest: equal at small strain and for any rotation. At a "
+                  "linear in Green-Lagrange strain) is the nearest: equal at small strain and for any rotation. At a "
                   "stretch s along one "
                   "axis it gives a stress of E (s^2 - 1) s / 2 per rest area where incise gives E (s - 1), both for nu "
                   "0: 32 % more at "
@@ -88,8 +88,8 @@ class FebioInput {
       add_comment(root,
                   "DIFFERS: FEBio's 'neo-Hookean' has mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2; incise's stable "
                   "Neo-Hookean (Smith, de "
-                  "Goes and Kim 2018) is equal at small strain and close while J stays near 1, and alone is defined "
-                  "for inverted tets.");
+                  "Goes and Kim 2018) is equal at small strain and close while J stays near 1, and only it is "
+                  "defined for inverted tets.");
     }
     if (model_.material.volume == VolumeTreatment::Averaged) {
       add_comment(root,

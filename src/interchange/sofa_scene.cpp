@@ -68,7 +68,7 @@ class SofaScene {
     add_comment(document, specimen_.provenance);
     add_comment(
         document,
-        "Units: mm, kg, s; so stress in kPa, force in mN, density in kg/mm3. Frame LPS. SOFA itself knows no units.");
+        "Units: mm, kg, s; so stress in kPa, force in mN, density in kg/mm3. Frame LPS. SOFA itself has no units.");
     add_comment(
         document,
         fmt::format(
@@ -77,7 +77,7 @@ class SofaScene {
             kSteps));
     add_comment(
         document,
-        "SOFA reaches equilibrium by damped motion (implicit Euler): compare when the speeds have died down. Its "
+        "SOFA reaches equilibrium by damped motion (implicit Euler): compare once the speeds have died down. Its "
         "StaticSolver does not converge with this force field.");
     if (model_.material.volume == VolumeTreatment::Averaged) {
       add_comment(document,
@@ -197,7 +197,7 @@ class SofaScene {
     if (support->holder) {
       throw CaseError("case", fmt::format("specimen.constraints[{}].surface", index),
                       fmt::format("'{}'", support->holder->name), "a plane for an export as sofa",
-                      "SOFA's contact with a surface is another method, with friction and margins of its own");
+                      "SOFA handles contact with a surface by another method, with its own friction and margins");
     }
     const SupportPlane& plane = *std::find_if(model_.supports.begin(), model_.supports.end(),
                                               [index](const SupportPlane& s) { return s.constraint == index; });
@@ -205,8 +205,8 @@ class SofaScene {
     add_comment(
         tissue,
         "Support: pushes vertices behind the plane, never pulls. SOFA has one stiffness for all vertices, the mean of "
-        "incise's, which go with each vertex's share of the surface: depths behind the plane differ by hundredths of a "
-        "mm.");
+        "incise's, which are proportional to each vertex's share of the surface. Depths behind the plane differ by "
+        "hundredths of a mm.");
     pugi::xml_node node = add(tissue, "PlaneForceField", "Sofa.Component.MechanicalLoad");
     node.append_attribute("name") = name.c_str();
     node.append_attribute("normal") = text_of(plane.normal).c_str();

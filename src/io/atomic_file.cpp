@@ -241,7 +241,8 @@ void require_replaceable(const fs::path& name) {
   const fs::path folder = without_trailing_slash(name);
   remove_abandoned_of(folder);
   if (fs::is_symlink(folder, error)) {
-    throw DataError(folder, "", "a link", "a free name, an empty folder, or a result to replace", "Name the folder that it leads to, or choose another place");
+    throw DataError(folder, "", "a link", "a free name, an empty folder, or a result to replace",
+                    "Name the folder to which it points, or choose another place");
   }
   if (!fs::exists(folder, error) || !fs::is_directory(folder, error) || fs::is_empty(folder, error)) return;
   constexpr const char* kExpected = "a free name, an empty folder, or a result to replace";
@@ -306,7 +307,7 @@ void AtomicFolder::commit() {
   held_.reset();
   std::error_code ignored;
   if (!replaced.empty()) fs::remove_all(replaced, ignored);
-  if (!problem.empty()) throw DataError(target_, "", problem, "a folder that can be brought to the disk");
+  if (!problem.empty()) throw DataError(target_, "", problem, "a folder that can be flushed to disk");
 }
 
 }  // namespace incise

@@ -123,13 +123,15 @@ std::string in_child_process(const std::filesystem::path& file, const std::strin
   const std::string expected = fmt::format("a complete {} file", what);
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    const std::string found = signal == SIGXCPU || signal == SIGKILL
-                                  ? fmt::format("content on which the image library did not end within {} s", limits.processor_s)
-                                  : fmt::format("content on which the image library broke down (signal {})", signal);
+    const std::string found =
+        signal == SIGXCPU || signal == SIGKILL
+            ? fmt::format("content on which the image library did not finish within {} s", limits.processor_s)
+            : fmt::format("content on which the image library crashed (signal {})", signal);
     throw DataError(file, "content", found, expected, "Is the file damaged?");
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty()) {
-    throw DataError(file, "content", "content on which the image library ended without a result", expected, "Is the file damaged?");
+    throw DataError(file, "content", "content on which the image library finished without a result", expected,
+                    "Is the file damaged?");
   }
   const char kind = answer.front();
   answer.erase(0, 1);

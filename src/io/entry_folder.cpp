@@ -35,7 +35,7 @@ EntryFolder::EntryFolder(std::filesystem::path folder) : folder_(std::move(folde
                         : !fs::is_regular_file(status)        ? "no regular file"
                         : !begins_as_an_entry(at->path())     ? "a file of another origin"
                                                               : nullptr;
-    if (found != nullptr) throw DataError(at->path(), "", found, "an entry of the cache", "Move it away");
+    if (found != nullptr) throw DataError(at->path(), "", found, "an entry of the cache", "Move it elsewhere");
   }
 }
 

@@ -126,7 +126,7 @@ std::string kind_of_file(const fs::path& path) {
     case fs::file_type::socket:
       return "a socket";
     default:
-      return "something that is no file";
+      return "something that is not a file";
   }
 }
 

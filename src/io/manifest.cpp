@@ -32,20 +32,20 @@ void write_to(const std::filesystem::path& file, const Manifest& manifest, const
 }  // namespace
 
 void describe(Visitor& v, Manifest& m) {
-  v("version", m.version, "Of incise.");
-  v("commit", m.commit, "Of the sources.");
+  v("version", m.version, "Version of incise.");
+  v("commit", m.commit, "Commit of the sources.");
   v("command", m.command, "The command line.");
-  v.derived("settings", std::optional<std::string>(), "In full, defaults included: a JSON object.");
-  v.bulk("settings_json", m.settings_json, "The same as text.");
-  v("seed", m.seed, "Of all that is random.");
-  v("threads", m.threads, "That took part.", kNotNegative);
-  v("instruction_set", m.instruction_set, "Of the vectorised kernels.");
-  v("inputs", m.inputs, "What it was made from.");
-  v({"wall_s", "Time that it took.", "s"}, m.wall_s, kNotNegative);
+  v.derived("settings", std::optional<std::string>(), "Settings in full, defaults included: a JSON object.");
+  v.bulk("settings_json", m.settings_json, "Settings as JSON text.");
+  v("seed", m.seed, "Seed of all that is random.");
+  v("threads", m.threads, "Number of threads.", kNotNegative);
+  v("instruction_set", m.instruction_set, "Instruction set of the vectorised kernels.");
+  v("inputs", m.inputs, "Files and folders from which the result was made.");
+  v({"wall_s", "Wall time of the work.", "s"}, m.wall_s, kNotNegative);
   v("machine", m.machine, "Processor, cores and compiler.");
-  const Field specimen{.name = "specimen_id", .meaning = "Whose the folder's files are.", .is_omitted = true};
+  const Field specimen{.name = "specimen_id", .meaning = "Specimen of the folder's files.", .is_omitted = true};
   if (v.optional(specimen, !m.specimen_id.empty())) v(specimen, m.specimen_id);
-  v({.name = "verdict", .meaning = "Of the run that filled the folder.", .is_omitted = true}, m.verdict);
+  v({.name = "verdict", .meaning = "Verdict of the run that filled the folder.", .is_omitted = true}, m.verdict);
 }
 
 void write_manifest(const std::filesystem::path& folder, const Manifest& manifest) {

@@ -55,27 +55,32 @@ void describe(Visitor& v, PathFile& file) {
   ToolPath& p = file.path;
   const Field schema{.name = "schema", .meaning = "Format and version of this file.", .is_omitted = true};
   if (v.optional(schema, true)) constant(v, schema, kSchema);
-  v("frame", p.frame, "Whose coordinates the path has.");
-  v("kind", p.kind, "What the tool does along it.");
+  v("frame", p.frame, "Frame of the path's coordinates.");
+  v("kind", p.kind, "What the tool does along the path.");
   v("closed", p.is_closed, "Whether the last waypoint leads back to the first.");
   std::vector<WaypointEntry> waypoints;
   for (const Waypoint& waypoint : p.waypoints) waypoints.push_back({waypoint});
-  v("waypoints", waypoints, "In the order of travel.");
+  v("waypoints", waypoints, "Waypoints in the order of travel.");
   const std::size_t least = p.is_closed ? 3 : 2;
   if (waypoints.size() < least)
     v.refuse({"waypoints"}, fmt::format("{} items", waypoints.size()), fmt::format("at least {}", least));
-  const Field edge{.name = "tumor_edge", .meaning = "In the same frame.", .unit = "mm", .is_omitted = true};
+  const Field edge{
+      .name = "tumor_edge", .meaning = "Tumour edge, in the same frame.", .unit = "mm", .is_omitted = true};
   if (v.optional(edge, true)) v(edge, p.tumor_edge.points);
-  const Field edge_closed{.name = "tumor_edge_closed", .meaning = "By default it is.", .is_omitted = true};
+  const Field edge_closed{
+      .name = "tumor_edge_closed", .meaning = "Whether the tumour edge is closed; default: yes.", .is_omitted = true};
   if (v.optional(edge_closed, !p.tumor_edge.is_closed)) v(edge_closed, p.tumor_edge.is_closed);
-  const Field transform{.name = "T_robot_sim", .meaning = "Rows; p_robot = T p_sim, mm.", .is_omitted = true};
+  const Field transform{
+      .name = "T_robot_sim", .meaning = "Transform by rows; p_robot = T p_sim, mm.", .is_omitted = true};
   v(transform, p.T_robot_sim);
   if (v.sets() && p.T_robot_sim) require_similarity(v, transform, *p.T_robot_sim);
-  describe_stated(v, {"source_sha256", "Of what it was made from."}, p.source_sha256, is_hash,
+  describe_stated(v, {"source_sha256", "SHA-256 of the path's source."}, p.source_sha256, is_hash,
                   "64 lower-case hex digits");
-  describe_stated(v, {"specimen_id", "That it was planned on."}, p.specimen_id, is_specimen_id, kSpecimenIdForm);
+  describe_stated(v, {"specimen_id", "Specimen for which the path was planned."}, p.specimen_id, is_specimen_id,
+                  kSpecimenIdForm);
   static constexpr std::array<std::string_view, 2> kOrigins{"real", "virtual"};
-  const Field origin{.name = "specimen_is", .meaning = "Virtual: a synthetic body.", .is_omitted = true};
+  const Field origin{
+      .name = "specimen_is", .meaning = "Virtual: the specimen is a synthetic body.", .is_omitted = true};
   if (v.optional(origin, p.is_virtual)) {
     std::size_t place = p.is_virtual ? 1 : 0;
     v.choice(origin, place, kOrigins);

@@ -36,7 +36,8 @@ StoredPixels decoded(std::string_view bytes, const fs::path& name) {
   const double x = pixels.per_width, y = pixels.per_height;
   if (x > 0.0 && y > 0.0 && std::abs(x / y - 1.0) > kSquare) {
     throw DataError(name, "", fmt::format("pixels that are not square ({:g} in a width, {:g} in a height)", x, y),
-                    "square pixels", "Scale the picture so that its pixels are square, or take the entry out.");
+                    "square pixels",
+                    "Scale the picture so that its pixels are square, or remove its pixel-density entry.");
   }
   return pixels;
 }
@@ -90,7 +91,7 @@ void require_possible_size(const fs::path& name, double width, double height, do
   }
   if (width * height > most_pixels_per_byte * static_cast<double>(bytes)) {
     throw DataError(name, "", fmt::format("{} in {} bytes", found, bytes),
-                    fmt::format("at most {:.0f} pixels for a byte, as its format has them", most_pixels_per_byte),
+                    fmt::format("at most {:.0f} pixels per byte, the limit of its format", most_pixels_per_byte),
                     "Is it damaged?");
   }
 }
@@ -102,7 +103,7 @@ void refuse_cmyk(const fs::path& name) {
 
 void refuse_picture(const fs::path& name, const std::string& place, const char* words, const char* format) {
   throw DataError(name, place, fmt::format("a picture that cannot be read ({})", words),
-                  fmt::format("a sound {} file", format), "Was it cut short or changed when it was copied?");
+                  fmt::format("an undamaged {} file", format), "Was it cut short or changed when it was copied?");
 }
 
 StoredPixels upright(StoredPixels from, int orientation) {

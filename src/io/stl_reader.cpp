@@ -94,7 +94,7 @@ TriMesh read_stl(const std::filesystem::path& path) {
         data.size() < kHeaderSize + 4
             ? "an STL file"
             : fmt::format("{} bytes for the {} triangles that a binary STL header states", binary_size, count),
-        "It looks truncated, or is no STL file.");
+        "It looks truncated or is not an STL file.");
   }
   TriMesh surface = is_binary ? read_binary(path, data, count) : read_ascii(path, data);
   const std::string_view heading = std::string_view(data).substr(0, is_binary ? kHeaderSize : data.find('\n'));

@@ -26,7 +26,7 @@ std::vector<std::string> cells_of(std::string_view row, const std::filesystem::p
         if (row[at] == '"') ++at;  // the first of two
         cell += row[at++];
       }
-      if (at == row.size()) throw DataError(path, fmt::format("line {}", line), "a quote that does not end", "\"…\"");
+      if (at == row.size()) throw DataError(path, fmt::format("line {}", line), "a quote that is not closed", "\"…\"");
       ++at;
       const std::size_t comma = std::min(row.find(',', at), row.size());
       if (!io_detail::trimmed(row.substr(at, comma - at)).empty()) {

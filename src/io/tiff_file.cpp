@@ -173,7 +173,7 @@ StoredPixels read_tiff(std::string_view bytes, const fs::path& name) {
   if (colours == PHOTOMETRIC_SEPARATED) refuse_cmyk(name);
   const auto bits = tiff_field<std::uint16_t>(tiff, TIFFTAG_BITSPERSAMPLE);
   if (tiff_field<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT) != SAMPLEFORMAT_UINT || bits > 16) {
-    throw DataError(name, "", "channels of another type", "whole numbers of 8 or 16 bits a channel");
+    throw DataError(name, "", "channels of another type", "whole numbers of 8 or 16 bits per channel");
   }
   require_possible_size(name, width, height, kMostPhotoPixels,
                         kMostTiffBits / std::max(1.0, static_cast<double>(bits) * channels), bytes.size());

@@ -43,13 +43,13 @@ std::size_t nifti_voxel_offset(const fs::path& path, const std::array<char, 540>
     if (size == 540) offset = static_cast<double>(number_at<std::int64_t>(header, 168, is_swapped));
     if (offset >= 348 && offset < 1e9) return static_cast<std::size_t>(offset);
   }
-  throw DataError(path, "header", "no place of the voxels", "a NIfTI file with header and voxels in one");
+  throw DataError(path, "header", "no offset of the voxels", "a NIfTI file with header and voxels in one");
 }
 
 /// Counts the bytes of the whole file, unpacked if it is packed.
 void require_complete_nifti(const fs::path& path, std::size_t voxel_bytes) {
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), gzclose);
-  if (!file) throw DataError(path, "", "a file that does not open", "a readable file");
+  if (!file) throw DataError(path, "", "a file that cannot be opened", "a readable file");
   std::array<char, 540> header{};
   std::vector<char> block(kBlock);
   std::size_t total = 0;

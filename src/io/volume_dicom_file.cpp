@@ -90,7 +90,7 @@ DicomFile::Element DicomFile::read_element(std::size_t position, bool is_explici
   } else {
     number_at(position + 4, 2);  // checks that the two bytes exist
     const std::string_view vr = std::string_view(bytes_).substr(position + 4, 2);
-    if (!is_vr(vr)) stop_at(position + 4, "bytes that are no value representation");
+    if (!is_vr(vr)) stop_at(position + 4, "bytes that are not a value representation");
     const bool is_long = has_long_length(vr);
     length = is_long ? number_at(position + 8, 4) : number_at(position + 6, 2);
     element.begin = position + (is_long ? 12 : 8);
@@ -118,7 +118,7 @@ std::size_t DicomFile::skip_items(std::size_t position, bool is_explicit, int de
   while (true) {
     const Element item = read_element(position, is_explicit);
     if (item.tag == kSequenceEnd) return item.begin;
-    if (item.tag != kItem) stop_at(position, "bytes that are no item of a sequence");
+    if (item.tag != kItem) stop_at(position, "bytes that are not an item of a sequence");
     position = item.begin + item.length;
     if (!item.is_undefined_length) continue;
     while (true) {

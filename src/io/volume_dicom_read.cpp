@@ -74,7 +74,7 @@ const std::vector<DicomIdentity>& choose_series(const fs::path& folder, const Fo
   if (content.series.size() > 1) {
     throw DataError(folder, "SeriesInstanceUID",
                     fmt::format("{} series: {}", content.series.size(), list_series(content)), "one series",
-                    "State which one as series_uid.");
+                    "Name one as series_uid.");
   }
   return content.series.begin()->second;
 }

@@ -68,7 +68,7 @@ std::string essence(const std::exception& error) {
   }
   text = text.substr(0, text.find('\n'));
   constexpr std::size_t longest = 160;
-  return text.empty() ? "no further word from the reader" : text.substr(0, longest);
+  return text.empty() ? "no further details from the reader" : text.substr(0, longest);
 }
 
 std::optional<Component> component_of(itk::IOComponentEnum type) {
@@ -308,7 +308,7 @@ RawImage read_here(const fs::path& path, VolumeFormat format) {
     image.bytes.resize(image.grid.voxel_count() * io->GetComponentSize());
     io->Read(image.bytes.data());
   } catch (const std::bad_alloc&) {
-    throw DataError(path, "voxels", "more than memory holds", "a volume that fits into memory");
+    throw DataError(path, "voxels", "more than fits into memory", "a volume that fits into memory");
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
@@ -326,7 +326,7 @@ void pack(const T& value, std::string& bytes) {
 template <class T>
 T unpack(const std::string& bytes, std::size_t& at) {
   T value{};
-  if (at + sizeof value > bytes.size()) throw Error("an image that was cut off on its way from another process");
+  if (at + sizeof value > bytes.size()) throw Error("an image that was truncated in transfer from another process");
   std::memcpy(&value, bytes.data() + at, sizeof value);
   at += sizeof value;
   return value;

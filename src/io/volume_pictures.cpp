@@ -71,7 +71,7 @@ std::vector<Picture> sorted_pictures(const fs::path& folder, int& other_files) {
     if (before.number == here.number)
       throw DataError(folder, "pictures", both() + " with one number", "one picture per number");
     if (here.number - before.number != step) {
-      throw DataError(folder, "pictures", "a hole in the numbering between " + both(), "every slice of the stack");
+      throw DataError(folder, "pictures", "a gap in the numbering between " + both(), "every slice of the stack");
     }
   }
   return pictures;

@@ -242,7 +242,7 @@ StackLayout lay_out_stack(const fs::path& path, const SliceFrame& frame, const s
 void judge_stack(const fs::path& path, const StackLayout& layout, const CtReadSettings& settings) {
   if (layout.missing_slices > 0 && settings.missing == MissingSlices::Refuse) {
     throw DataError(path, "slices",
-                    fmt::format("{} missing: the slices are {:.4g} mm apart, but there is a hole {}",
+                    fmt::format("{} missing: the slices are {:.4g} mm apart, but there is a gap {}",
                                 layout.missing_slices, layout.common_step_mm, layout.first_hole),
                     "every slice of the series", "Copy the series again, or allow missing slices to be interpolated.");
   }

@@ -148,7 +148,8 @@ void VtkXmlFile::take_from_budget(const pugi::xml_node& node, std::size_t bytes)
     unpacked_bytes_ += bytes;
     return;
   }
-  fail(node, fmt::format("data that unpack to more than {} bytes, in a file of {}", most, text_.size()), "a file that is not packed so far");
+  fail(node, fmt::format("data that unpack to more than {} bytes, in a file of {}", most, text_.size()),
+       "a file that is compressed less");
 }
 
 /// Returns the decoded, decompressed bytes of an array that is not ascii.

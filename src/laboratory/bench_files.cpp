@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr const char* kFirstSchema = "incise.specimen/1";
 constexpr const char* kSecondSchema = "incise.specimen/2";
-constexpr const char* kTruth = "The truth about a virtual specimen, for tests: nothing of this may reach a planner.";
+constexpr const char* kTruth = "The truth about a virtual specimen, for tests. No planner may use it.";
 constexpr const char* kVirtual = "Virtual: computed by incise's bench, no real tissue.";
 
 Json matrix(const Mat4& T) {
@@ -64,8 +64,8 @@ struct WholeNumber {
   const char* meaning;
 };
 constexpr WholeNumber kSeed{
-    "seed", "Of the shape, of the fields inside, of all noise and of every parameter that is not given"};
-constexpr WholeNumber kSeries{"series", "Of what specimens of one series share: the hand-eye error"};
+    "seed", "Seed of the shape, of the fields inside, of all noise and of every parameter that is not given."};
+constexpr WholeNumber kSeries{"series", "Seed of the hand-eye error, which the specimens of a series share."};
 
 template <class Parameters>
 std::string schema_text(const char* name, const std::vector<WholeNumber>& numbers, const Parameters& parameters,

@@ -64,7 +64,7 @@ steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps
   if (replay.outcome != ReplayOutcome::Completed) {
     throw DataError(request.program, replay.line > 0 ? fmt::format("line {}", replay.line) : "",
                     fmt::format("a motion that ends as {}", to_string(replay.outcome)),
-                    "a program that the arm can run to its end, and that ends outside the tissue",
+                    "a program that the arm can complete and that ends outside the tissue",
                     "`incise replay` shows how far it gets.");
   }
   for (const auto& folder : {request.output, request.truth}) steps::make_parent(folder);
@@ -72,14 +72,14 @@ steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps
   if (!specimen->is_held(context.monitor)) return {nullptr, false};
   const std::vector<TipPose> course = specimen->course(asked_course(replay, program.T_flange_tool));
   if (const auto misfit = specimen->misfit(course)) {
-    throw DataError(request.program, "poses", *misfit, "a course in this specimen's tissue round its tumour",
+    throw DataError(request.program, "poses", *misfit, "a course in this specimen's tissue that goes round its tumour",
                     "Is it the program of another specimen?");
   }
   PhotographSettings settings;
   settings.mm_per_pixel = request.mm_per_pixel;
   const auto made = specimen->cut(course, request.power_w, settings, context.workers, context.monitor);
   if (!made) {
-    context.monitor.message(Severity::Warning, "the cut did not converge: nothing to photograph");
+    context.monitor.message(Severity::Warning, "the cut did not converge, so it has no photograph");
     return {nullptr, false};
   }
   AtomicFolder folder(request.output);
@@ -118,7 +118,7 @@ steps::StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const
   const KnownPhysicsCut made = cut_knowing_physics(body, plan, request.simulations, context.workers, context.monitor);
   steps::StepResult result_of;
   nlohmann::ordered_json& result = result_of.json;
-  result["note"] = "From the truth about a virtual specimen: nothing of this may reach a planner.";
+  result["note"] = "From the truth about a virtual specimen. No planner may use it.";
   result["virtual"] = true;
   result["outcome"] = to_string(made.cut.outcome);
   result["compensation_outcome"] = to_string(made.correction.outcome);

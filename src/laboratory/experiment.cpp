@@ -134,16 +134,17 @@ ExperimentSettings possible(ExperimentSettings settings) {
                  fmt::format("expected an even number of specimens above 0, found {}", settings.specimens));
   if (settings.bench == 2 && settings.outside)
     throw CaseError("command line", "--outside", fmt::format("{} on the second bench", *settings.outside),
-                    "the option on the first one alone", "Specimens of the second differ from one another as it is.");
+                    "the option only with the first bench",
+                    "Specimens of the second bench differ from one another anyway.");
   const bool is_ascending =
       std::ranges::adjacent_find(settings.learning, std::greater_equal<>()) == settings.learning.end();
   INCISE_REQUIRE(
       settings.learning.empty() || (settings.learning.front() > 0 && is_ascending),
-      fmt::format("expected numbers of photographs above 0 that ascend, found {}", fmt::join(settings.learning, ", ")));
+      fmt::format("expected ascending numbers of photographs above 0, found {}", fmt::join(settings.learning, ", ")));
   if (!settings.learning.empty() && !settings.with_rivals)
-    throw CaseError("command line", "--learning", "no rivals", "the rivals: what is learned is held against them");
+    throw CaseError("command line", "--learning", "no rivals", "the rivals, with which the learning is compared");
   if (settings.bench == 2 && settings.with_known_physics)
-    throw CaseError("command line", "--known-physics", "the second bench", "the option on the first one alone");
+    throw CaseError("command line", "--known-physics", "the second bench", "the option only with the first bench");
   return settings;
 }
 
@@ -321,7 +322,7 @@ void Experiment::claim_folder() const {
     const ExperimentJson found = kept.is_object() ? kept.value(key, if_absent) : ExperimentJson();
     if (found != asked)
       throw DataError(file, key, found.dump(), fmt::format("{}, that of this command", asked.dump()),
-                      "Its specimens differ: choose another place for the output");
+                      "Its specimens differ. Choose another place for the output");
   };
   require_same("seed", context_.seed, nullptr);
   require_same("bench", settings_.bench, 1);
@@ -612,7 +613,7 @@ void Experiment::calibrate() {
       inputs.push_back(input);
   }
   if (asked.cases.empty())
-    throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one to calibrate on");
+    throw DataError(root_, "", "no specimen whose planned cut could be measured", "at least one, for the calibration");
   ExperimentSteps steps(root_, workers_, monitor_);
   const auto calibrated = [&](const std::string& step, CalibrationMethod method, const std::string& folder,
                               const char* product, std::size_t photographs) {
@@ -653,8 +654,8 @@ void Experiment::calibrate() {
     if (answer.end == StepEnd::Done)
       learning_.push_back({photographs, root_ / name / "calibration.json", tool_of(answer.result)});
     else
-      warnings_.push_back(
-          fmt::format("nothing is learned from {} photographs alone: {}", photographs, refusal_of(name, answer)));
+      warnings_.push_back(fmt::format("the calibration on the first {} photographs is not used: {}", photographs,
+                                      refusal_of(name, answer)));
   }
   calibrated_kpa_ = mean_modulus_kpa(calibration_);
   if (!settings_.is_quick) table_1_ = of_all("table_1", CalibrationMethod::Paper, "table_1", "table_1.csv");

@@ -243,25 +243,27 @@ std::optional<bool> AdvisedSpecimen::is_worse_without_pull() const {
 }
 
 void describe(Visitor& v, AdvisedSpecimen& s) {
-  v("specimen", s.name, "Its name.");
+  v("specimen", s.name, "Name of the specimen.");
   v.derived("series", s.series,
-            "Those of one number are drawn together for intervals; 0: they are taken as independent.");
-  v("role", s.role, "test or outside.");
-  v("kind", s.kind, "Of one outside the calibrated range; else empty.");
-  v("advice", s.advice, "Of `incise assess`.");
-  v({"expected_gain_mm", "Expected mean absolute error as planned less that corrected.", "mm"}, s.expected_gain_mm);
-  describe_interval(v, {"gain_80_mm", "Stated middle 80 % of that.", "mm"}, s.gain_80);
-  describe_interval(v, {"gain_95_mm", "Middle 95 %, likewise.", "mm"}, s.gain_95);
+            "Intervals draw the specimens of one series together; 0: they are taken as independent.");
+  v("role", s.role, "Role of the specimen: test or outside.");
+  v("kind", s.kind, "Kind of a specimen outside the calibrated range; else empty.");
+  v("advice", s.advice, "Advice of `incise assess`.");
+  v({"expected_gain_mm", "Expected mean absolute error as planned minus that corrected.", "mm"}, s.expected_gain_mm);
+  describe_interval(v, {"gain_80_mm", "Stated middle 80 % of the gain.", "mm"}, s.gain_80);
+  describe_interval(v, {"gain_95_mm", "Stated middle 95 % of the gain.", "mm"}, s.gain_95);
   v("p_worse", s.p_worse, "Stated probability that the corrected cut is the worse one.", {0.0, 1.0});
-  v("p_worse_if_alike", s.p_worse_if_alike, "By the simulation.", {0.0, 1.0});
-  v("p_worse_if_unlike", s.p_worse_if_unlike, "By the move alone.", {0.0, 1.0});
-  v("p_unlike", s.p_unlike, "That the calibration does not hold.", {0.0, 1.0});
+  v("p_worse_if_alike", s.p_worse_if_alike, "p_worse if the calibration holds, by the simulation.", {0.0, 1.0});
+  v("p_worse_if_unlike", s.p_worse_if_unlike, "p_worse if the calibration does not hold, by the move alone.",
+    {0.0, 1.0});
+  v("p_unlike", s.p_unlike, "Probability that the calibration does not hold.", {0.0, 1.0});
   v("planned", s.planned, "The cut as planned.");
   v("corrected", s.corrected, "The corrected cut.");
-  v.derived("is_worse", s.is_worse(), "Whether the corrected cut is, by the truth; absent: two open rings.");
-  v("p_worse_without_pull", s.p_worse_without_pull, "As p_worse, had the pull not been measured.", {0.0, 1.0});
+  v.derived("is_worse", s.is_worse(),
+            "Whether the corrected cut is the worse one, by the truth; absent: two open rings.");
+  v("p_worse_without_pull", s.p_worse_without_pull, "p_worse if the pull had not been measured.", {0.0, 1.0});
   v("withheld", s.withheld, "The cut corrected without the pull.");
-  v.derived("is_worse_without_pull", s.is_worse_without_pull(), "As is_worse, of that cut.");
+  v.derived("is_worse_without_pull", s.is_worse_without_pull(), "is_worse of the cut corrected without the pull.");
 }
 
 std::vector<AdvisedSpecimen> advised_specimens(const std::vector<Trial>& trials, const std::filesystem::path& truth) {

@@ -22,10 +22,11 @@ inline void describe(Visitor& v, AdvisedCut& c) {
   v("p_close_margin", c.p_close_margin, "Stated probability of a close margin somewhere.", {0.0, 1.0});
   describe_interval(v, {"error_80_mm", "Stated middle 80 % of the photograph's mean absolute error.", "mm"},
                     c.error_80);
-  describe_interval(v, {"error_95_mm", "Middle 95 %, likewise.", "mm"}, c.error_95);
+  describe_interval(v, {"error_95_mm", "Stated middle 95 % of the photograph's mean absolute error.", "mm"},
+                    c.error_95);
   v({"photographed_mm", "Mean absolute error of the photograph; absent: no closed ring.", "mm"}, c.photographed_mm,
     kNotNegative);
-  v({"true_mm", "The same of the truth; absent: the ring stayed open.", "mm"}, c.true_mm, kNotNegative);
+  v({"true_mm", "Mean absolute error of the true cut; absent: the ring stayed open.", "mm"}, c.true_mm, kNotNegative);
   v({"least_margin_mm", "Least distance of the true kerf from the tumour's edge.", "mm"}, c.least_margin_mm);
 }
 

@@ -39,7 +39,7 @@ void add_picture(ReportData& data, const std::filesystem::path& svg, const std::
 /// The paper's measurements, marked as the paper's.
 ReportTable papers_table() {
   ReportTable table;
-  table.title = "For comparison: what the paper reports of four ex vivo tongues (its Table II; not ours)";
+  table.title = "For comparison: the paper's results on four ex vivo tongues (its Table II; not ours)";
   table.columns = {"specimen", "cut", "mean_abs_error_mm", "sd_abs_error_mm", "hu_score", "centroid_shift_mm"};
   table.rows = {{"S1 (paper)", "as planned", "1.57", "0.66", "0.08", "1.96"},
                 {"S2 (paper)", "as planned", "1.91", "0.90", "0.12", "2.22"},
@@ -121,8 +121,9 @@ ReportTable outcome_table(const PathComparison& paths, const ReportJson& result)
   }
   if (result.contains("known_physics")) {
     const ReportJson& floor = result.at("known_physics");
-    table.rows.push_back({"known-physics limit (the arm's errors not known)", "", cell(floor.at("specimens"), ""),
-                          cell(floor.at("mean_after_mm"), "mean_after_mm"), "", "", "", "", "", ""});
+    table.rows.push_back({"known-physics limit (arm's errors unknown to the planner)", "",
+                          cell(floor.at("specimens"), ""), cell(floor.at("mean_after_mm"), "mean_after_mm"), "", "", "",
+                          "", "", ""});
   }
   return table;
 }
@@ -179,23 +180,22 @@ ReportData experiment_report(const std::vector<Trial>& trials, const PathCompari
     data.subtitle += claim(paths);
   }
   const std::string refused = refused_specimens(trials);
-  data.subtitle +=
-      refused.empty() ? "No step refused a specimen." : "Refused, at the step in brackets: " + refused + ".";
+  data.subtitle += refused.empty() ? "No step refused a specimen." : "Refused (step in brackets): " + refused + ".";
   add_picture(
       data, folder / "comparison/box_plot.svg", "Errors before and after",
       "Absolute and signed errors along the contours of the virtual photographs, after the paper's Fig. 6 a, b.");
   add_pairs(data, trials);
   add_picture(data, folder / "comparison/error_by_clock.svg", "Error round the ring",
-              "Signed error by the place on a clock face over the tumour.");
+              "Signed error by clock position over the tumour.");
   add_picture(data, folder / "advice/roc.svg", "Was the advice right?",
-              "Stated probability that the corrected cut is the worse one, against which one it was.");
+              "Stated probability that the corrected cut is the worse one, against which cut was the worse one.");
   add_picture(data, folder / "advice/reliability.svg", "Close margins, stated and seen",
               "Stated probability of a margin below 2.2 mm somewhere, against how often there was one.");
   if (result.at("table_1").is_array())
     add_picture(data, folder / "table_1/table_1.svg", "Table I of this experiment",
                 "Simulated speed and dullness against the photographs, after the paper's Table I.");
   add_picture(data, folder / "calibration/fit.svg", "Calibration",
-              "Signed error photographed and simulated, and what the data say of each parameter.");
+              "Photographed and simulated signed errors, and the posterior of each parameter.");
   data.tables.push_back(outcome_table(paths, result));
   if (result.at("fit").is_object()) data.tables.push_back(fit_table(result));
   data.tables.push_back(

@@ -130,32 +130,36 @@ std::vector<std::string> paths_of(std::span<const TestedSeries> series) {
 }  // namespace
 
 void describe(Visitor& v, PathResult& r) {
-  v("name", r.name, "Of the path.");
+  v("name", r.name, "Name of the path.");
   v({"mean_mm", "Mean over specimens of the photographs' mean |error|.", "mm"}, r.mean_mm);
   v("worse", r.worse, "Specimens whose error grew, or whose ring opened.");
-  v("harmed", r.harmed, "Of these: by more than 0.1 mm, or opened.");
+  v("harmed", r.harmed, "Of the worse ones: those that grew by more than 0.1 mm, or opened.");
   v("closed", r.closed, "Cuts whose ring truly closed.");
-  v("close_margins", r.close_margins, "Of these: with less tissue beside the tumour than the close margin somewhere.");
+  v("close_margins", r.close_margins,
+    "Of the closed ones: those with less tissue beside the tumour than the close margin somewhere.");
   v("pairs", r.pairs, "Specimens with a closed ring along this path and as planned.");
-  v("uncut", r.uncut, "Specimens that were cut as planned, and not along this path.");
+  v("uncut", r.uncut, "Specimens that were cut as planned but not along this path.");
   v("simulated", r.is_simulated, "Whether a simulated cut takes part in the path.");
-  v("compared", r.compared, "Of the pairs: those with a closed ring along the best path without simulation, too.");
-  v({"compared_mean_mm", "Of these: as mean_mm.", "mm"}, r.compared_mean_mm);
-  v({"difference_mm", "Of these: mean less that along the best one; negative: better.", "mm"}, r.difference_mm);
-  describe_interval(v, {"confidence_mm", "Of the difference, 95 %, paired by specimen.", "mm"}, r.confidence);
+  v("compared", r.compared, "Of the pairs: those that also have a closed ring along the best path without simulation.");
+  v({"compared_mean_mm", "As mean_mm, over the compared specimens.", "mm"}, r.compared_mean_mm);
+  v({"difference_mm",
+     "Over the compared specimens: mean minus that along the best path without simulation; negative: better.", "mm"},
+    r.difference_mm);
+  describe_interval(v, {"confidence_mm", "95 % interval of difference_mm, paired by specimen.", "mm"}, r.confidence);
 }
 
 void describe(Visitor& v, PathPair& p) {
-  v("first", p.first, "A path.");
-  v("second", p.second, "Another.");
-  v("compared", p.compared, "Specimens with closed rings along both, in the photographs.");
-  v({"first_mm", "Of these: mean over specimens of the mean |error|.", "mm"}, p.first_mm);
-  v({"second_mm", "Likewise.", "mm"}, p.second_mm);
-  v.derived("difference_mm", p.difference_mm(), "The second less the first.");
-  describe_interval(v, {"confidence_mm", "Of that difference, 95 %.", "mm"}, p.confidence);
-  v("closed", p.closed, "Specimens whose rings truly closed along both.");
-  v("close_margins_first", p.close_margins_first, "Of these: closer to the edge than the close margin somewhere.");
-  v("close_margins_second", p.close_margins_second, "Likewise, along the second.");
+  v("first", p.first, "Name of a path.");
+  v("second", p.second, "Name of the second path.");
+  v("compared", p.compared, "Specimens with closed rings along both paths, in the photographs.");
+  v({"first_mm", "Mean |error| along the first path, mean over the compared specimens.", "mm"}, p.first_mm);
+  v({"second_mm", "Mean |error| along the second path, mean over the compared specimens.", "mm"}, p.second_mm);
+  v.derived("difference_mm", p.difference_mm(), "The second mean minus the first.");
+  describe_interval(v, {"confidence_mm", "95 % interval of difference_mm.", "mm"}, p.confidence);
+  v("closed", p.closed, "Specimens whose rings truly closed along both paths.");
+  v("close_margins_first", p.close_margins_first,
+    "Of the closed ones: those closer to the edge than the close margin somewhere, along the first path.");
+  v("close_margins_second", p.close_margins_second, "The same along the second path.");
 }
 
 const PathResult* PathComparison::find(std::string_view name) const {

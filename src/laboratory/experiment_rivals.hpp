@@ -78,9 +78,10 @@ struct LearningPoint {
   PathPair pair;                           ///< the forecasts without and with simulation, on the same specimens
 };
 inline void describe(Visitor& v, LearningPoint& p) {
-  v("photographs", p.photographs, "Of a calibration, the first; absent: all.");
+  v("photographs", p.photographs, "Number of photographs used, the first of each calibration; absent: all.");
   v("pair", p.pair,
-    "Along their forecast without and with simulation; of none: as planned, and corrected with the default tool.");
+    "Cuts along the forecasts without and with simulation; without photographs: as planned, and corrected with the "
+    "default tool.");
 }
 /// Returns the points from none to all photographs, on the specimens whose rings closed along both paths of every
 /// point; empty: there are none.

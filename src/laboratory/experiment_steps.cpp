@@ -42,8 +42,8 @@ struct KeptAnswer {
   std::vector<std::string> products;  ///< digest of each
 };
 void describe(Visitor& v, KeptAnswer& k) {
-  v("acceptable", k.is_acceptable, "Whether the experiment can go on with it.");
-  v("result", k.result, "What the step found, as JSON.");
+  v("acceptable", k.is_acceptable, "Whether the experiment can continue with the result.");
+  v("result", k.result, "Result of the step, as JSON.");
   v("products", k.products, "Digest of each file and folder that the step made.");
 }
 
@@ -186,7 +186,7 @@ StepAnswer ExperimentSteps::made_now(const ExperimentStep& step, LogFile& log) {
     throw;
   } catch (const std::exception& error) {  // a fault of the program: the experiment ends, and says where
     log.refused(fmt::format("incise: {}: {}", step.name, error.what()));
-    throw DataError(folder_ / "log.txt", step.name, error.what(), "a step that ends");
+    throw DataError(folder_ / "log.txt", step.name, error.what(), "a step that completes");
   }
 }
 

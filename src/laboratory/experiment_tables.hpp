@@ -102,16 +102,17 @@ struct TrialSummary {
 /// Values of the pairs are null if there are none.
 inline void describe(Visitor& v, TrialSummary& s) {
   const auto if_pairs = [&s](double value) { return s.pairs > 0 ? std::optional(value) : std::nullopt; };
-  v("specimens", s.specimens, "With that role, whatever came of them.");
-  v("pairs", s.pairs, "Of them: two closed rings.");
-  v("opened", s.opened, "A closed ring as planned, and the second cut's was open or not to be found.");
-  v("uncorrected", s.uncorrected, "A closed ring as planned, and no second cut.");
-  v.derived("mean_before_mm", if_pairs(s.mean_before_mm), "Mean over specimens of the mean absolute error.");
-  v.derived("mean_after_mm", if_pairs(s.mean_after_mm), "Likewise, of the second cut.");
-  v.derived("gain_percent", if_pairs(s.gain_percent), "Of these.");
-  v.derived("gain_percent_of_all", if_pairs(s.gain_percent_of_all), "With the uncorrected ones.");
-  v("worse", s.worse, "Specimens whose error grew, and those that opened.");
-  v({"most_worse_mm", "By how much an error grew at most; 0: none did.", "mm"}, s.most_worse_mm);
+  v("specimens", s.specimens, "All specimens with that role.");
+  v("pairs", s.pairs, "Specimens with two closed rings.");
+  v("opened", s.opened, "Specimens with a closed ring as planned, whose second ring was open or not found.");
+  v("uncorrected", s.uncorrected, "Specimens with a closed ring as planned and no second cut.");
+  v.derived("mean_before_mm", if_pairs(s.mean_before_mm), "Mean absolute error as planned, mean over the pairs.");
+  v.derived("mean_after_mm", if_pairs(s.mean_after_mm), "The same of the second cut.");
+  v.derived("gain_percent", if_pairs(s.gain_percent), "Reduction of the mean error, over the pairs.");
+  v.derived("gain_percent_of_all", if_pairs(s.gain_percent_of_all),
+            "The same with the uncorrected specimens, whose error is unchanged.");
+  v("worse", s.worse, "Specimens whose error grew or whose ring opened.");
+  v({"most_worse_mm", "Greatest increase of an error; 0: none increased.", "mm"}, s.most_worse_mm);
 }
 /// Summarises the specimens with that role: as planned against the corrected cut, or against the cut along another
 /// path. Zeros without pairs.

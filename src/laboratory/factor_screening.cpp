@@ -140,7 +140,7 @@ std::string factors_svg(const FactorTable& table) {
 
 nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const std::filesystem::path& output,
                                       const RunContext& run, Workers& workers, Monitor& monitor) {
-  INCISE_REQUIRE(settings.factors.size() >= 2, "expected at least two factors: with one, chance is not known");
+  INCISE_REQUIRE(settings.factors.size() >= 2, "expected at least two factors: with one, chance cannot be estimated");
   const auto start = std::chrono::steady_clock::now();
   const FractionalFactorial design(settings.factors.size());
   const FolderLock lock(output);

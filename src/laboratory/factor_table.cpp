@@ -172,33 +172,34 @@ FactorTable factor_table(const FractionalFactorial& design, std::span<const std:
 }
 
 void describe(Visitor& v, FactorEffect& e) {
-  v("factor", e.factor, "Its name.");
-  v({"change_mm", "Of the mean absolute error, mean over specimens.", "mm"}, e.change_mm);
-  describe_interval(v, {"change_95_mm", "Interval of that mean.", "mm"}, e.change_95);
-  v("moved", e.moved, "Root mean squares over specimens of what the factor does to each.");
-  v("made_with", e.made_with, "Cuts with it.");
-  v("measured_with", e.measured_with, "Of these those whose ring could be measured.");
-  v("made_without", e.made_without, "Cuts without it.");
-  v("measured_without", e.measured_without, "Of these those whose ring could be measured.");
+  v("factor", e.factor, "Name of the factor.");
+  v({"change_mm", "Change of the mean absolute error with the factor, mean over specimens.", "mm"}, e.change_mm);
+  describe_interval(v, {"change_95_mm", "95 % interval of change_mm.", "mm"}, e.change_95);
+  v("moved", e.moved, "Effect of the factor on each part of the error: root mean squares over specimens.");
+  v("made_with", e.made_with, "Cuts with the factor.");
+  v("measured_with", e.measured_with, "Of these, cuts whose ring could be measured.");
+  v("made_without", e.made_without, "Cuts without the factor.");
+  v("measured_without", e.measured_without, "Of these, cuts whose ring could be measured.");
 }
 
 void describe(Visitor& v, PairEffect& e) {
   std::vector<std::string> names;
   for (const auto& [a, b] : e.pairs) names.push_back(a + " and " + b);
-  v.derived("pairs", names, "That the design does not tell apart.");
-  v({"change_mm", "Of the mean absolute error where both of a pair are on, or both off; mean over specimens.", "mm"},
+  v.derived("pairs", names, "Pairs of factors that the design cannot tell apart.");
+  v({"change_mm", "Change of the mean absolute error where both of a pair are on, or both off; mean over specimens.",
+     "mm"},
     e.change_mm);
-  describe_interval(v, {"change_95_mm", "Interval of that mean.", "mm"}, e.change_95);
-  v("p", e.p, "Two-tailed, that it is chance for one of all groups: times their number.");
+  describe_interval(v, {"change_95_mm", "95 % interval of change_mm.", "mm"}, e.change_95);
+  v("p", e.p, "Two-tailed p-value multiplied by the number of groups.");
 }
 
 void describe(Visitor& v, FactorTable& t) {
-  v("cuts", t.cuts, "That were asked for.");
-  v("measured", t.measured, "Of these those whose ring could be measured.");
+  v("cuts", t.cuts, "Requested cuts.");
+  v("measured", t.measured, "Of these, cuts whose ring could be measured.");
   v("estimated", t.estimated, "Specimens, counted from 0, whose measured cuts determine their effects.");
-  v("factors", t.factors, "In the order of the design.");
-  v("chance", t.chance, "What an idle factor would be found to move.");
-  v("pairs", t.pairs, "The least p first.");
+  v("factors", t.factors, "Effects of the factors, in the order of the design.");
+  v("chance", t.chance, "Effect that a factor without influence would seem to have.");
+  v("pairs", t.pairs, "Interactions of pairs of factors, the smallest p first.");
 }
 
 }  // namespace incise::laboratory

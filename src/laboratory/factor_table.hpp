@@ -24,8 +24,8 @@ struct ErrorParts {
 };
 inline void describe(Visitor& v, ErrorParts& p) {
   v({"level_mm", "Mean round the ring.", "mm"}, p.level_mm);
-  v({"shift_mm", "Of the ring as a whole.", "mm"}, p.shift_mm);
-  v({"rest_mm", "Root mean square of what is left.", "mm"}, p.rest_mm);
+  v({"shift_mm", "Shift of the ring as a whole.", "mm"}, p.shift_mm);
+  v({"rest_mm", "Root mean square of the remainder.", "mm"}, p.rest_mm);
 }
 
 /// The effect of one factor on the error as planned.

@@ -112,7 +112,7 @@ void write_power(const std::filesystem::path& folder, const PowerResult& result,
 
 std::vector<PowerSubject> subjects_of(const PowerStepRequest& request, std::uint64_t seed) {
   if (!request.files.empty() && request.specimens) {
-    throw CaseError("command line", "--specimens", fmt::format("{} beside specimen files", *request.specimens),
+    throw CaseError("command line", "--specimens", fmt::format("{} together with specimen files", *request.specimens),
                     "either files or a number of specimens to draw");
   }
   std::vector<PowerSubject> subjects;

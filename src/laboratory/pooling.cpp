@@ -63,7 +63,7 @@ void check(const laboratory::PathCut& cut, const std::string& specimen, const st
   throw DataError(file, specimen,
                   fmt::format("a cut along {} that is {} and {} an error", cut.path, to_string(cut.end),
                               cut.mean_abs_error_mm ? "has" : "lacks"),
-                  "an error for measured cuts alone", kHint);
+                  "an error only for measured cuts", kHint);
 }
 
 /// Requires known paths, each once, and a measured cut as planned.
@@ -73,7 +73,7 @@ void check(const TestedSpecimen& specimen, const std::filesystem::path& file) {
   };
   const laboratory::PathCut* planned = specimen.find(laboratory::kAsPlannedPath);
   if (planned == nullptr || planned->end != laboratory::PathEnd::Measured)
-    refuse("no measured cut as planned", "one: it is what every path is held against");
+    refuse("no measured cut as planned", "a measured cut as planned, with which every path is compared");
   std::set<std::string> paths;
   for (const laboratory::PathCut& cut : specimen.cuts) {
     const bool is_known = cut.path == laboratory::kAsPlannedPath || cut.path == laboratory::kIncisePath ||
@@ -216,7 +216,7 @@ TextTable paths_csv(const std::vector<std::pair<std::string, PathComparison>>& p
 /// Draws the differences from the best path without simulation, side by side for each part that has one. @pre the first
 /// has.
 std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>& parts, std::size_t series) {
-  CategoryPlot plot{.title = fmt::format("Virtual specimens of {} series: mean |error| less that of the best path "
+  CategoryPlot plot{.title = fmt::format("Virtual specimens of {} series: mean |error| minus that of the best path "
                                          "without simulation",
                                          series),
                     .categories = {},
@@ -244,7 +244,7 @@ std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>&
 PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments, const std::filesystem::path& output,
                           const RunContext& run, Monitor& monitor) {
   INCISE_REQUIRE(experiments.size() >= 2,
-                 fmt::format("expected two experiments or more, found {}", experiments.size()));
+                 fmt::format("expected at least two experiments, found {}", experiments.size()));
   const auto start = std::chrono::steady_clock::now();
   std::vector<PooledSeries> all;
   for (const std::filesystem::path& folder : experiments) all.push_back(read_series(folder));

@@ -45,9 +45,10 @@ struct PathCut {
   std::optional<double> least_margin_mm;    ///< of the truth; present if the ring truly closed
 };
 inline void describe(Visitor& v, PathCut& c) {
-  v("path", c.path, "as_planned, incise, or a rival.");
-  v("end", c.end, "Whether it was cut, and its ring closed in the photograph.");
-  v({"mean_abs_error_mm", "Of the photograph's points.", "mm"}, c.mean_abs_error_mm, {0.0, kMostErrorMm});
+  v("path", c.path, "Name of the path: as_planned, incise, or a rival.");
+  v("end", c.end, "Whether the path was cut and its ring closed in the photograph.");
+  v({"mean_abs_error_mm", "Mean absolute error of the photograph's points.", "mm"}, c.mean_abs_error_mm,
+    {0.0, kMostErrorMm});
   v({"least_margin_mm", "Least distance of the true kerf from the tumour's edge; absent: open.", "mm"},
     c.least_margin_mm);
 }
@@ -58,7 +59,7 @@ struct LearningPathCut {
   PathCut cut;  ///< along `photographs` or `learned`
 };
 inline void describe(Visitor& v, LearningPathCut& c) {
-  v("photographs", c.photographs, "Of the calibration, the first.");
+  v("photographs", c.photographs, "Number of photographs used, the first of the calibration.");
   describe(v, c.cut);
 }
 
@@ -73,10 +74,10 @@ struct TestedSpecimen {
   [[nodiscard]] const PathCut* find(std::string_view path) const;
 };
 inline void describe(Visitor& v, TestedSpecimen& s) {
-  v("specimen", s.name, "Its name.");
-  v("unlike", s.unlike, "Covariates outside those of the calibration.");
-  v("cuts", s.cuts, "Along every path, as planned first.");
-  v("learning", s.learning, "Along the forecasts of the first photographs.");
+  v("specimen", s.name, "Name of the specimen.");
+  v("unlike", s.unlike, "Number of covariates outside the calibration's range.");
+  v("cuts", s.cuts, "Cuts along every path, as planned first.");
+  v("learning", s.learning, "Cuts along the forecasts from the first photographs.");
 }
 
 inline constexpr std::string_view kAsPlannedPath = "as_planned";

@@ -29,7 +29,7 @@ void claim_folder(const std::filesystem::path& output, const FolderClaim& claim,
                         fmt::format("{}, that of this command", expected.dump()), hint);
     };
     require("schema", claim.schema, "Choose another place for the output");
-    require("seed", seed, "Its specimens differ: choose another place for the output");
+    require("seed", seed, "Its specimens differ. Choose another place for the output");
   }
   for (const char* name : summaries) std::filesystem::remove(output / name);
 }

@@ -14,7 +14,7 @@
 namespace incise::laboratory {
 namespace {
 
-constexpr const char* kCutTruth = "The truth about a virtual cut, for tests: nothing of this may reach a planner.";
+constexpr const char* kCutTruth = "The truth about a virtual cut, for tests. No planner may use it.";
 
 double mean_abs(const std::vector<double>& errors) {
   double mean = 0.0;
@@ -159,7 +159,7 @@ std::unique_ptr<const VirtualSpecimen> specimen_of(const MakeSpecimenRequest& re
   };
   if (!request.specimen.empty()) {
     if (request.bench && *request.bench != bench_of(request.specimen))
-      refuse("--bench", "a specimen file of the other laboratory", "no --bench: the file's schema says it");
+      refuse("--bench", "a specimen file of the other laboratory", "no --bench: the file's schema determines it");
     if (request.factors || request.series)
       refuse(request.factors ? "--factors" : "--series", "a specimen file", "a specimen drawn from the seed");
     return specimen_of(request.specimen, context);

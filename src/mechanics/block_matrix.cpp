@@ -21,7 +21,7 @@ BlockMatrixF::BlockMatrixF(std::shared_ptr<const BlockPattern> p)
     : pattern(std::move(p)), values(zeros_in_large_pages<float>(9 * pattern->blocks() + 4)) {}
 
 void convert(const BlockMatrix& matrix, BlockMatrixF& result, Workers& workers) {
-  INCISE_REQUIRE(matrix.pattern == result.pattern, "expected two matrices of one pattern");
+  INCISE_REQUIRE(matrix.pattern == result.pattern, "expected two matrices of the same pattern");
   workers.for_each(matrix.values.size(), 9 * kRowsPerChunk * 16,
                    [&](std::size_t i) { result.values[i] = static_cast<float>(matrix.values[i]); });
 }

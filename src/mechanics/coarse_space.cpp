@@ -68,7 +68,7 @@ void invert(std::vector<double>& dense, std::size_t size) {
   hold_blas_to_one_thread();
   dpotrf_("L", &n, dense.data(), &n, &info);
   INCISE_REQUIRE(info == 0,
-                 fmt::format("expected a positive definite matrix, found coarse pivot {} not above 0", info));
+                 fmt::format("expected a positive definite matrix, found that coarse pivot {} is not above 0", info));
   dpotri_("L", &n, dense.data(), &n, &info);
   INCISE_REQUIRE(info == 0, fmt::format("expected a regular coarse matrix, found a zero at {}", info));
   mirror(dense, size);
@@ -239,7 +239,7 @@ void CoarseSpace::find_basis(std::size_t aggregate) {
   }
   const Eigen::LLT<Mat6> factor(diagonal);
   INCISE_REQUIRE(factor.info() == Eigen::Success,
-                 fmt::format("expected a positive definite matrix, found otherwise on aggregate {}", aggregate));
+                 fmt::format("expected a positive definite matrix, found that it is not on aggregate {}", aggregate));
   basis_[aggregate] = factor.matrixL().solve(motions.transpose()).transpose();
   into_basis_[aggregate] = factor.matrixU() * into_motions;
 }

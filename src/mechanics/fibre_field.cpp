@@ -42,10 +42,10 @@ void require_disjoint(const TetMesh& mesh, std::span<const VertexId> from, std::
   for (const VertexId v : from) is_from[v.index()] = 1;
   const auto common = std::find_if(to.begin(), to.end(), [&](VertexId v) { return is_from[v.index()] != 0; });
   if (common == to.end()) return;
-  throw CaseError(
-      "case", fmt::format("{}.to", kField),
-      fmt::format("vertex {} at {} mm, which `from` has, too", common->value, text_of(mesh.vertices[common->index()])),
-      "two regions apart from each other", "Make one of them smaller");
+  throw CaseError("case", fmt::format("{}.to", kField),
+                  fmt::format("vertex {} at {} mm, which is also in `from`", common->value,
+                              text_of(mesh.vertices[common->index()])),
+                  "two regions apart from each other", "Make one of them smaller");
 }
 
 /// Laplace's equation for the potential at the vertices, which is given in both regions and unknown elsewhere.

@@ -95,8 +95,9 @@ void HolderContact::find_normals(const TriMesh& surface) {
   for (const Triangle& t : triangles_) {
     for (const VertexId corner : t) {
       Vec3& normal = vertex_normals_[corner.index()];
-      INCISE_REQUIRE(normal.norm() > kOnEdge, fmt::format("expected an outside at every vertex, found triangles round vertex {} that face "
-                                                          "each other", corner.value));
+      INCISE_REQUIRE(normal.norm() > kOnEdge, fmt::format("expected an outside at every vertex, found that the "
+                                                          "triangles round vertex {} face each other",
+                                                          corner.value));
       normal.normalize();
     }
   }

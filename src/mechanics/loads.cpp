@@ -99,8 +99,8 @@ class ConstraintApplier {
     if (!(displaced.displacement_mm.stableNorm() <= most_mm)) {
       throw CaseError(kWhere, field("displacement_mm"), text_of(displaced.displacement_mm),
                       fmt::format("at most {:g} mm", most_mm),
-                      fmt::format("That is {:g} times the diagonal of the body's box: no tissue stretches so far, and "
-                                  "rounding would hide its strain. Lengths are in mm",
+                      fmt::format("The limit is {:g} times the diagonal of the body's box: no tissue stretches that "
+                                  "far, and rounding would hide its strain. Lengths are in mm",
                                   kMostDiagonals));
     }
     hold(selected(displaced.where), {true, true, true}, displaced.displacement_mm);
@@ -180,7 +180,7 @@ class ConstraintApplier {
       model_.applied_load_mn[index_] += load.force_mn;
       if (model_.dead_load_mn[load.vertex.index()].allFinite() && model_.applied_load_mn[index_].allFinite()) continue;
       throw CaseError(kWhere, field("traction_kpa"), text_of(traction.traction_kpa),
-                      "one whose force over the loaded area is a finite number of mN");
+                      "a traction whose force on the loaded area is a finite number of mN");
     }
   }
 
@@ -210,7 +210,9 @@ void apply_constraints(TissueModel& model, const Vec3& gravity_mm_s2) {
   for (std::size_t v = 0; v < count; ++v) {
     model.dead_load_mn[v] = model.vertex_mass_kg[v] * gravity_mm_s2;
     if (model.dead_load_mn[v].allFinite()) continue;
-    throw CaseError(kWhere, "specimen.gravity_mm_s2", text_of(gravity_mm_s2), "one whose weights are finite numbers of mN");
+    throw CaseError(kWhere, "specimen.gravity_mm_s2", text_of(gravity_mm_s2),
+                    "an acceleration that gives finite "
+                    "weights in mN");
   }
   model.applied_load_mn.assign(model.constraints.size(), Vec3::Zero());
 
@@ -246,10 +248,10 @@ void require_no_rigid_motion(const TissueModel& model) {
   }
   if (free_motions == 0) return;
   throw CaseError(kWhere, "specimen.constraints",
-                  fmt::format("{} of 6 rigid motions of the body left free", free_motions),
+                  fmt::format("{} of the 6 rigid motions of the body left free", free_motions),
                   "fixed or displaced constraints that stop all six",
                   model.supports.empty() ? "Fix a region that is not a single line of vertices along all three axes"
-                                         : "A support does not count: it only pushes, and tissue may lift off it");
+                                         : "A support does not count: it only pushes, and tissue may lift off");
 }
 
 }  // namespace incise

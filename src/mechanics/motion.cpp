@@ -226,7 +226,7 @@ StepReport advance_motion(const TissueModel& model, Motion& motion, const Motion
                              motion.tissue.positions.size(), motion.velocities_mm_s.size()));
   INCISE_REQUIRE(applied_mn.empty() || applied_mn.size() == count,
                  fmt::format("expected {} applied forces or none, found {}", count, applied_mn.size()));
-  INCISE_REQUIRE(workspace.data().matrix.pattern == model.pattern, "expected a workspace that was made for this model");
+  INCISE_REQUIRE(workspace.data().matrix.pattern == model.pattern, "expected a workspace made for this model");
   Step step(model, motion, settings, workspace.data(), workers, applied_mn);
   const StepReport report = step.run();
   if (report.outcome == Outcome::Success) step.finish(motion);

@@ -95,8 +95,8 @@ class Equilibrium {
   /// Returns the chosen solver and the reason, for a person.
   [[nodiscard]] std::string explanation() const {
     return fmt::format(
-        "Newton with the exact tangent ({} of {} steps with the projected one, where that was not positive definite), "
-        "{}",
+        "Newton with the exact tangent ({} of {} steps with the projected one, where the exact one was not positive "
+        "definite), {}",
         projected_, result_.iterations, solver_.explanation());
   }
   [[nodiscard]] int linear_iterations() const { return solver_.cg_iterations(); }
@@ -334,8 +334,8 @@ std::string explain_stretch(const StaticResult& stretched) {
   const std::string found =
       stretched.outcome == Outcome::ElementInverted
           ? fmt::format(
-                "the tissue came to rest, but {} of its tets turned inside out: it is stretched farther than the mesh "
-                "can follow",
+                "the tissue came to rest, but {} of its tets turned inside out: the tissue is stretched farther than "
+                "the mesh can follow",
                 stretched.inverted_tets)
           : fmt::format("no equilibrium of the held tissue was found in {} iterations", stretched.iterations);
   return fmt::format(

@@ -67,7 +67,7 @@ std::string TangentSolver::explanation() const {
   const std::string reason = choice_ == LinearSolver::Automatic
                                  ? fmt::format("{} vertices, {} {}", vertices,
                                                is_iterative_ ? "more than" : "not more than", kMostVerticesForCholesky)
-                                 : fmt::format("as asked for; {} vertices", vertices);
+                                 : fmt::format("as requested; {} vertices", vertices);
   if (!is_iterative_) {
     return fmt::format("sparse Cholesky (CHOLMOD, supernodal, METIS; {}): {} factorisations", reason, factorisations_);
   }
@@ -75,7 +75,7 @@ std::string TangentSolver::explanation() const {
                                  cg_iterations_, cg_systems_);
   if (has_given_way_) {
     text +=
-        fmt::format(". One system did not converge in {} iterations; from there on sparse Cholesky: {} factorisations",
+        fmt::format(". One system did not converge in {} iterations; from then on sparse Cholesky: {} factorisations",
                     max_cg_iterations_, factorisations_);
   }
   return text;

@@ -147,7 +147,7 @@ BodyField BodyField::largest_body(const GrayVolume& occupancy, BodyReport& repor
   require_fractions(occupancy);
   const Components components = find_components(occupancy);
   if (components.sizes.empty()) {
-    throw InvalidArgument(fmt::format("occupancy: found no voxel of at least {} (largest {}), expected a body",
+    throw InvalidArgument(fmt::format("occupancy: found no voxel of at least {} (the greatest is {}), expected a body",
                                       kBodyThreshold,
                                       *std::max_element(occupancy.voxels.begin(), occupancy.voxels.end())));
   }

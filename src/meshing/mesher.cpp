@@ -67,8 +67,8 @@ class Meshing {
       const std::optional<double> iso = enclosed_->iso_for(label_mm3_);
       if (!iso) {
         throw InvalidArgument(
-            fmt::format("labels: no surface of one occupancy encloses the {:.4g} mm3 of the tissue; the "
-                        "body is too thin for its voxels, use a finer volume or less blur",
+            fmt::format("labels: no surface of constant occupancy encloses the {:.4g} mm3 of the tissue: the body is "
+                        "too thin for its voxels. Use a finer volume or less blur",
                         label_mm3_));
       }
       result_.iso = *iso;
@@ -165,7 +165,7 @@ class Meshing {
     throw_if_cancelled(monitor_, "meshing");
     if (end == RefineEnd::TooManyVertices) {
       throw InvalidArgument(
-          fmt::format("mesh sizing: refinement passed {} vertices; use longer edges", most_vertices(settings_)));
+          fmt::format("mesh sizing: refinement exceeded {} vertices; use longer edges", most_vertices(settings_)));
     }
     if (mesher->tet_count() == 0) {
       throw InvalidArgument(fmt::format("mesh sizing: a body of {:.3g} mm3 is too small for edges of {:.3g} mm",

@@ -24,7 +24,7 @@ void append_violations(std::vector<Problem>& violations, const PlannedCut& cut) 
       std::find_if(cut.path.points.begin(), cut.path.points.end(), [](const Vec3& p) { return !p.allFinite(); });
   if (bad != cut.path.points.end()) {
     violations.push_back(
-        {fmt::format("path[{}]", bad - cut.path.points.begin()), "a number that is not finite", "finite ones"});
+        {fmt::format("path[{}]", bad - cut.path.points.begin()), "a number that is not finite", "finite numbers"});
   } else if (cut.path.points.size() >= needed && !(length_mm(cut.path) > 0.0)) {
     violations.push_back({"path", "length 0", "above 0 mm"});
   }

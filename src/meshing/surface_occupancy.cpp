@@ -189,8 +189,9 @@ VolumeGrid grid_around(const Box3& box, double voxel_mm, int margin) {
     const double cells = std::ceil(box.sizes()[axis] / voxel_mm) + 2.0 * margin;
     voxels *= cells;
     if (voxels > static_cast<double>(kMaxVoxels)) {
-      throw InvalidArgument(fmt::format(
-          "voxel_mm: {} mm cuts the surface's box into more than {} voxels; use larger ones", voxel_mm, kMaxVoxels));
+      throw InvalidArgument(
+          fmt::format("voxel_mm: {} mm divides the surface's box into more than {} voxels; use larger voxels", voxel_mm,
+                      kMaxVoxels));
     }
     grid.size[static_cast<std::size_t>(axis)] = static_cast<int>(cells);
   }
@@ -232,8 +233,8 @@ GrayVolume occupancy_of(const TriMesh& closed_surface, double voxel_mm, double s
     return result;
   }
   throw InvalidArgument(
-      fmt::format("surface: no {} sets of rays cross it consistently; it holds flat or folded "
-                  "triangles that need repair",
+      fmt::format("surface: none of {} sets of rays crosses it consistently; it has flat or folded triangles that "
+                  "need repair",
                   kShiftsTried));
 }
 

@@ -75,11 +75,11 @@ void require_enough_depth(const PathCheckWords& words, const ToolPath& path, con
     if (w.depth_mm < *thickness) continue;
     throw CaseError(
         words.where, words.depth_field,
-        fmt::format("a depth through the tissue: {} mm at waypoint {} at {} mm, where it is {:.2f} mm thick",
+        fmt::format("a depth through the tissue: {} mm at waypoint {} at {} mm, where the tissue is {:.2f} mm thick",
                     w.depth_mm, i, in_words(w.position_mm), *thickness),
         "a depth that stays inside the tissue",
-        "The tool would come out beneath. If that is a thin flake over the specimen, take it away with the brush "
-        "(ct.edits)");
+        "The tool would come out beneath. If this tissue is a thin flake over the specimen, remove it with "
+        "the brush (ct.edits)");
   }
 }
 

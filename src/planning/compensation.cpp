@@ -37,7 +37,10 @@ std::vector<double> sector_angles(const ToolPath& path, const SurfaceView& view,
     const Vec2 place = view.place_of(path.waypoints[i].position_mm);
     const double angle = i == 0 ? 0.0 : positive_angle(polar_angle(place, center) - first);
     if (i > 0 && angle <= turned) {
-      throw CaseError("compensation", "path", fmt::format("waypoint {} that goes back about the tumour's centre", i),
+      throw CaseError("compensation", "path",
+                      fmt::format("waypoint {}, at which the path turns back about the "
+                                  "tumour's centre",
+                                  i),
                       "a path that runs once round the tumour's centre, counter-clockwise",
                       "The paper's correction is not defined for this shape.");
     }

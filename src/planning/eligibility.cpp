@@ -20,14 +20,15 @@ constexpr double kUsualWeight = 4.0;
 /// Reasons not to trust the simulation of this specimen, apart from its distance to the calibrated ones.
 std::vector<std::string> failings(const EligibilityEvidence& e, const EligibilityRules& rules) {
   std::vector<std::string> reasons;
-  if (!e.is_registered) reasons.emplace_back("the registration was refused: where the specimen lies is not known");
+  if (!e.is_registered) reasons.emplace_back("the registration was refused: the specimen's position is not known");
   if (!(e.registration_rmse_mm <= rules.most_rmse_mm)) {
     reasons.push_back(fmt::format("the simulated surface lies {:.2f} mm (rms) from the measured one, above {} mm",
                                   e.registration_rmse_mm, rules.most_rmse_mm));
   }
   if (!(e.corrected.unmeasured_weight <= rules.most_unmeasured)) {
     reasons.push_back(fmt::format(
-        "along the corrected path the ring stays open in {:.0f} % of what the calibration expects, above {:.0f} %",
+        "along the corrected path the ring stays open in {:.0f} % of the tissues that the calibration expects, above "
+        "{:.0f} %",
         100.0 * e.corrected.unmeasured_weight, 100.0 * rules.most_unmeasured));
   }
   if (!e.gain) reasons.push_back(fmt::format("the gain cannot be predicted: {}", e.no_gain_because));
@@ -59,7 +60,7 @@ double likeness(double t, double degrees) {
 /// none.
 std::string open_rings(const EligibilityEvidence& e) {
   if (!(e.corrected.unmeasured_weight > 0.0)) return {};
-  return fmt::format("; also, its ring stays open in {:.0f} % of what the calibration expects",
+  return fmt::format("; also, its ring stays open in {:.0f} % of the tissues that the calibration expects",
                      100.0 * e.corrected.unmeasured_weight);
 }
 
@@ -69,8 +70,8 @@ std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, co
   const CutGain& gain = *e.gain;
   if (!e.is_accepted)
     reasons.emplace_back(
-        "the correction is not accepted: its own simulated cut fails, is no nearer, or has a mean error of the "
-        "electrode's radius or more");
+        "the correction is not accepted: its own simulated cut fails, is no nearer to the target, or has a mean "
+        "error of the electrode's radius or more");
   if (!(gain.mean_mm > rules.least_gain_sds * gain.sd_mm)) {
     reasons.push_back(
         fmt::format("the expected gain of {:.2f} mm is not above {} of its standard deviation of {:.2f} mm",
@@ -83,7 +84,8 @@ std::vector<std::string> doubts(const EligibilityEvidence& e, double p_worse, co
   const double p = e.corrected.p_close_bound();
   if (!(p <= rules.most_p_close_margin) && !(p <= e.intended.p_close_bound())) {
     reasons.push_back(fmt::format(
-        "corrected, a margin is too close somewhere with a probability of {:.3f}, above {} and above {:.3f} as planned",
+        "along the corrected path a margin is too close somewhere with a probability of {:.3f}, above {} and above "
+        "the {:.3f} as planned",
         p, rules.most_p_close_margin, e.intended.p_close_bound()));
   }
   return reasons;

@@ -31,7 +31,7 @@ ToolPath plan_line(const SurfaceQuery& surface, const Contour& line, const PlanS
       throw CaseError("plan", "line",
                       fmt::format("a path outside the tissue: waypoint {} at {} mm is beside the surface", i,
                                   in_words(course.points[i])),
-                      "a line that stays on the surface seen along the approach");
+                      "a line that stays on the surface, seen along the approach");
     }
     path.waypoints.push_back({.position_mm = seen->position_mm,
                               .axis = view.tool_axis(place, settings.axis_mode),

@@ -22,9 +22,10 @@ constexpr int kMostDoublings = 7;
 [[noreturn]] void throw_outside(double margin_mm, const Vec3& where, const std::string& why) {
   throw CaseError("plan", "lateral_margin_mm",
                   fmt::format("{:g}, a path outside the tissue: at {} mm {}", margin_mm, in_words(where), why),
-                  "a ring that stays on the surface seen along the approach",
-                  "Too close to the tumour's edge lie the tissue's rim, a fold, or another body over it, such as the "
-                  "palate. Use a smaller margin, or take away with the brush (ct.edits) what is not the specimen");
+                  "a ring that stays on the surface, seen along the approach",
+                  "The tissue's rim, a fold, or another body over the tissue, such as the palate, is too close to "
+                  "the tumour's edge. Use a smaller margin, or remove what is not the specimen with the brush "
+                  "(ct.edits)");
 }
 
 /// The margin as a function of the place in the picture: f = distance of the surface there from the tumour edge −

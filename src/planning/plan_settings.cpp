@@ -19,7 +19,7 @@ std::vector<Problem> validate(const PlanSettings& s) {
                      fmt::format("at least {} for a {}", least, to_string(s.kind)));
   if (is_direction(s.approach) && is_direction(s.start_direction) &&
       s.approach.normalized().cross(s.start_direction.normalized()).norm() < 1e-3) {
-    violations.push_back({"start_direction", "the approach's own direction", "one across it"});
+    violations.push_back({"start_direction", "the direction of the approach", "a direction across the approach"});
   }
   return violations;
 }

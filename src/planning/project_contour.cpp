@@ -27,7 +27,9 @@ Vec3 lay_down(const Vec3& p, const std::string& name, const SurfaceQuery& surfac
               double tolerance_mm, const Words& words) {
   const std::optional<SurfacePoint> seen = surface.seen_at(p, approach);
   const std::string expected = fmt::format("every point within {} mm of the surface along the approach", tolerance_mm);
-  const std::string hint = "Is it in mm, LPS, and drawn on the configuration (rest or stretched) that the case states?";
+  const std::string hint =
+      "Is the curve in mm, LPS, and drawn on the configuration (rest or stretched) that the "
+      "case states?";
   if (!seen) {
     throw CaseError(words.where, words.field,
                     fmt::format("{}: {} at {} mm is beside it", words.off_surface, name, in_words(p)), expected, hint);

@@ -31,7 +31,7 @@ struct Similarity {
     INCISE_REQUIRE(
         shear < 1e-4,
         fmt::format(
-            "expected a rotation times one scale, found axes that are {:.2g} off being perpendicular and equally long",
+            "expected a rotation times one scale, found axes that miss being perpendicular and equally long by {:.2g}",
             shear));
   }
   [[nodiscard]] Vec3 operator*(const Vec3& p) const { return scale * (R * p) + t; }
@@ -50,7 +50,7 @@ class LayDown {
     const std::optional<CloudPlace> place = surface_.at(p);
     const auto refuse = [&](const std::string& found, const std::string& expected) {
       throw DataError(name_, fmt::format("{} at {} mm", what, in_words(p)), found, expected,
-                      "Is the transform the one of this surface, and is all of the path in view?");
+                      "Does the transform belong to this surface, and is the whole path in view?");
     };
     if (!place) refuse("no measured surface", "the whole path on the measured surface, seen along the approach");
     if (place->is_extrapolated) refuse("a place beyond the measured surface's rim", "measured points all round");
@@ -81,10 +81,11 @@ class LayDown {
     const double average = average_shift(k);
     const double aside = shifts_[k] - average;
     if (std::abs(aside) > kMostAsideMm) {
-      throw DataError(name_, fmt::format("{} at {} mm", names_[k], in_words(before_[k])),
-                      fmt::format("a surface {:.2f} mm beside that around it, measured from the simulated one", aside),
-                      fmt::format("at most {} mm", kMostAsideMm),
-                      "Is this the same tissue? --smoothing-mm 0 projects every point by itself.");
+      throw DataError(
+          name_, fmt::format("{} at {} mm", names_[k], in_words(before_[k])),
+          fmt::format("a surface {:.2f} mm off the surface around it, measured from the simulated one", aside),
+          fmt::format("at most {} mm", kMostAsideMm),
+          "Is this the same tissue? --smoothing-mm 0 projects each point by itself.");
     }
     result.shift_noise_mm += aside * aside;
     return before_[k] - average * surface_.approach();

@@ -303,7 +303,7 @@ class Registering {
       result.reasons.push_back(std::move(reason));
     };
     const std::string both_residuals =
-        fmt::format("residual {:.3g} mm (rms) and score {:.3f}, against {:.3g} mm and {:.3f} as it is",
+        fmt::format("residual {:.3g} mm (rms) and score {:.3f}, against {:.3g} mm and {:.3f} for the source itself",
                     result.mirror_rmse_mm, result.mirror_score, result.shape_rmse_mm, result.score);
     fail(is_mirrored_, RegistrationOutcome::Mirrored,
          fmt::format("the source's mirror image fits the target better than the source ({}): one of the two clouds is "
@@ -323,13 +323,14 @@ class Registering {
          fmt::format("the residual of {:.3g} mm (rms) is above {:.3g} mm", result.rmse_mm,
                      settings_.largest_rmse * frame_.length));
     fail(result.shape_residual_mm > settings_.largest_shape_residual * frame_.length, RegistrationOutcome::OtherShape,
-         fmt::format("another shape: {:.3g} mm of the residual are neither noise nor settling, expected at most {:.3g} mm",
+         fmt::format("another shape: neither noise nor settling explains {:.3g} mm of the residual, expected at most "
+                     "{:.3g} mm",
                      result.shape_residual_mm, settings_.largest_shape_residual * frame_.length));
     const double largest_sd = settings_.settling_mm > 0.0 ? settings_.largest_settled_sd : settings_.largest_sd;
     fail(c.sharpness[0] < settings_.least_sharpness || !(c.weakest_sd_mm < largest_sd),
          RegistrationOutcome::IllDetermined,
          fmt::format("{} hardly changes the residual: its standard deviation is {:.3g} mm, and {:.2g} % of the least "
-                     "visible motion shows",
+                     "visible motion shows in the distances",
                      c.weakest.empty() ? "a motion" : c.weakest, c.weakest_sd_mm * frame_.length,
                      100.0 * c.sharpness[0]));
     fail(result.rival_score > settings_.largest_rival * result.score, RegistrationOutcome::Ambiguous,
@@ -339,7 +340,7 @@ class Registering {
     result.scale_at_limit =
         !settings_.scale.is_fixed() && (scale <= settings_.scale.low + tiny || scale >= settings_.scale.high - tiny);
     fail(result.scale_at_limit, RegistrationOutcome::ScaleAtLimit,
-         fmt::format("the scale is at the end of its range, {:.4g}: the clouds fit one beyond it better", scale));
+         fmt::format("the scale is at the end of its range, {:.4g}: the clouds fit a scale beyond it better", scale));
     if (!is_mirrored_ && !result.is_handedness_determined) {
       result.reasons.push_back(fmt::format(
           "the source's mirror image fits about as well ({}): the shapes do not show whether one is reflected",
@@ -358,8 +359,9 @@ class Registering {
     const bool is_suspected = shape.apart_rms > kSettled || shape.settled_rms > kSettledOrMoved;
     if (settings_.settling_mm > 0.0 || !is_suspected) return;
     result.reasons.push_back(
-        fmt::format("apart from the pose the surfaces differ smoothly by {:.2g} mm (rms), up to {:.2g} mm, as tissue does that has settled or "
-                    "is held differently; the pose may be off by as much, settling_mm looks for both",
+        fmt::format("apart from the pose, the surfaces differ smoothly by {:.2g} mm (rms), up to {:.2g} mm, as if the "
+                    "tissue had settled or were held differently; the pose may be off by as much. With settling_mm, "
+                    "pose and settling are found together",
                     frame_.length * shape.apart_rms, frame_.length * shape.apart_largest));
   }
 
@@ -389,28 +391,32 @@ class Registering {
 }  // namespace
 
 void describe(Visitor& v, RegistrationSettings& s) {
-  v("scale", s.scale, "What the scale may be; low = high fixes it.");
+  v("scale", s.scale, "Range of the scale; low = high fixes it.");
   v("outlier_weight", s.outlier_weight, "Share of the target that has no counterpart in the source.", {0.001, 0.95});
   v.internal("start", s.start, "One start; absent: a search over rotations.");
   v("rotations", s.rotations, "Starts of the search, spread evenly over all rotations.", {8.0, 2000.0});
-  v("finish_with_icp", s.finish_with_icp, "Whether point to plane follows the drift.");
-  v("max_iterations", s.max_iterations, "Iterations of the drift, and of the refinement after it.", {1.0, 100000.0});
-  v("drift_points", s.drift_points, "A larger cloud takes part in the drift as about so many clusters.", {100.0});
+  v("finish_with_icp", s.finish_with_icp, "Whether a point-to-plane refinement follows the drift.");
+  v("max_iterations", s.max_iterations, "Most iterations of the drift, and of the refinement after it.",
+    {1.0, 100000.0});
+  v("drift_points", s.drift_points, "A larger cloud enters the drift as about this many clusters.", {100.0});
   v({"settling_mm",
-     "How far the tissue may have settled along the source's mean normal (up or down) since it was simulated: pose and "
+     "How far the tissue may have settled along the source's mean normal (up or down) since it was simulated. Pose and "
      "settling are then found together; 0: the pose alone.",
      "mm"},
     s.settling_mm, {0.0, 20.0});
-  v("largest_rmse", s.largest_rmse, "Poorer fits are not a success.", kPositive);
-  v("least_inliers", s.least_inliers, "Of the source's points; fewer are not a success.", {0.0, 1.0});
-  v("least_fit", s.least_fit, "Of the source's points above the target that lie on it, for a success.", {0.0, 1.0});
+  v("largest_rmse", s.largest_rmse, "Greatest residual (rms) for a success.", kPositive);
+  v("least_inliers", s.least_inliers, "Least share of inliers among the source's points, for a success.", {0.0, 1.0});
+  v("least_fit", s.least_fit, "Least share of the source's points above the target that lie on it, for a success.",
+    {0.0, 1.0});
   v("largest_shape_residual", s.largest_shape_residual,
-    "Misfit that neither noise nor settling explains, for a success.", kPositive);
-  v("largest_sd", s.largest_sd, "Of the pose along its weakest direction, for a success.", kPositive);
+    "Greatest misfit, for a success, that neither noise nor settling explains.", kPositive);
+  v("largest_sd", s.largest_sd, "Greatest standard deviation of the pose along its weakest direction, for a success.",
+    kPositive);
   v("largest_settled_sd", s.largest_settled_sd,
-    "The same where settling was looked for, which leaves more open than noise.", kPositive);
-  v("least_sharpness", s.least_sharpness, "See PoseObservability::sharpness.", kNotNegative);
-  v("largest_rival", s.largest_rival, "Score of the runner-up over that of the best, for a success.", {0.0, 1.0, true});
+    "The same where settling is searched for, which leaves the pose less certain.", kPositive);
+  v("least_sharpness", s.least_sharpness, "Least sharpness of the least visible motion, for a success.", kNotNegative);
+  v("largest_rival", s.largest_rival, "Greatest ratio of the rival's score to that of the pose found, for a success.",
+    {0.0, 1.0, true});
 }
 
 std::vector<Problem> validate(const RegistrationSettings& s) {
@@ -434,7 +440,7 @@ Registration register_clouds(const PointCloud& source, const PointCloud& target,
           fmt::format("the {} has {} points, expected at least {}", name, cloud->points.size(), kFewestPoints));
     } else if (is_line(measure->variances)) {
       result.reasons.push_back(
-          fmt::format("the {}'s points lie on a line or in one place: no rotation follows from them", name));
+          fmt::format("the {}'s points lie on a line or coincide: they do not determine a rotation", name));
     }
   }
   if (!result.reasons.empty()) return result;
@@ -454,37 +460,44 @@ void describe(Visitor& v, Registration& r) {
   const auto if_found = [is_found](auto value) { return is_found ? std::optional(value) : std::nullopt; };
   const auto finite_if_found = [is_found](double value) { return is_found ? if_finite(value) : std::nullopt; };
   const Similarity& t = r.T_target_source;
-  v("outcome", r.outcome, "How it ended.");
+  v("outcome", r.outcome, "How the registration ended.");
   v.derived("converged", r.outcome == RegistrationOutcome::Converged, "Whether nothing argues against the transform.");
-  v("reasons", r.reasons, "Why it is not a success, or what to beware of, worst first.");
-  v.derived("scale", if_found(t.scale), "Of the transform.");
-  v.derived("rotation", if_found(t.rotation), "Of the transform.");
-  v.derived("rotation_deg", if_found(units::deg_from_rad(rotation_vector(t.rotation).norm())), "Its angle.");
-  v.derived("translation_mm", if_found(t.translation_mm), "Of the transform.");
-  v.derived("T_target_source", if_found(matrix_of(t)), "4 x 4, rows, scale included.");
-  v.derived("rmse_mm", finite_if_found(r.rmse_mm), "Of the source's points above the target, along the normals.");
+  v("reasons", r.reasons, "Why the registration is not a success, and cautions; worst first.");
+  v.derived("scale", if_found(t.scale), "Scale of the transform.");
+  v.derived("rotation", if_found(t.rotation), "Rotation of the transform.");
+  v.derived("rotation_deg", if_found(units::deg_from_rad(rotation_vector(t.rotation).norm())),
+            "Angle of the rotation.");
+  v.derived("translation_mm", if_found(t.translation_mm), "Translation of the transform.");
+  v.derived("T_target_source", if_found(matrix_of(t)), "Matrix of the transform, 4 x 4, by rows, scale included.");
+  v.derived("rmse_mm", finite_if_found(r.rmse_mm),
+            "Residual (rms) of the source's points above the target, along the normals.");
   v.derived("inlier_fraction", finite_if_found(r.inlier_fraction),
-            "Of the source's points: above the target, distance below 3 robust standard deviations.");
-  v.derived("settled_rms_mm", if_finite(r.settled_rms_mm), "Of the settling that was found beside the pose.");
-  v.derived("settled_max_mm", if_finite(r.settled_max_mm), "Likewise, greatest.");
-  v.derived("noise_mm", if_finite(r.noise_mm), "What rmse_mm would be if the surfaces were alike.");
-  v.derived("fit_fraction", if_finite(r.fit_fraction), "Inliers of those points alone that lie above the target.");
-  v.derived("target_fraction", if_finite(r.target_fraction), "Of the target's points, by the drift's probability.");
+            "Share of the source's points that lie above the target within 3 robust standard deviations.");
+  v.derived("settled_rms_mm", if_finite(r.settled_rms_mm), "Settling found together with the pose (rms).");
+  v.derived("settled_max_mm", if_finite(r.settled_max_mm), "Greatest settling found together with the pose.");
+  v.derived("noise_mm", if_finite(r.noise_mm), "What rmse_mm would be if the surfaces had the same shape.");
+  v.derived("fit_fraction", if_finite(r.fit_fraction), "Inliers as a share of the source's points above the target.");
+  v.derived("target_fraction", if_finite(r.target_fraction),
+            "Matched share of the target's points, by the drift's probability.");
   v.derived("drift_sigma_mm", if_finite(r.drift_sigma_mm), "Width of the drift's Gaussians at the end.");
-  v("iterations", r.iterations, "Of drift and finish.");
-  v("starts", r.starts, "Of the search.");
+  v("iterations", r.iterations, "Iterations of drift and finish.");
+  v("starts", r.starts, "Starts of the search.");
   v.derived("score", if_finite(r.score), "Share of the source that lies on the target to within the noise.");
-  v.derived("rival_score", if_finite(r.rival_score), "Of the best pose that is another one; 0: none.");
-  v.derived("rival_T_target_source", r.rival ? std::optional(matrix_of(*r.rival)) : std::nullopt, "That pose.");
-  v.derived("shape_rmse_mm", if_finite(r.shape_rmse_mm), "rmse_mm before settling was looked for.");
+  v.derived("rival_score", if_finite(r.rival_score),
+            "Score of the rival, the best pose distinct from this one; 0: none.");
+  v.derived("rival_T_target_source", r.rival ? std::optional(matrix_of(*r.rival)) : std::nullopt,
+            "Matrix of the rival.");
+  v.derived("shape_rmse_mm", if_finite(r.shape_rmse_mm), "rmse_mm before settling was searched for.");
   v.derived("shape_residual_mm", if_finite(r.shape_residual_mm), "Misfit that neither noise nor settling explains.");
-  v.derived("mirror_score", if_finite(r.mirror_score), "Of the best pose found for the source's mirror image.");
-  v.derived("mirror_rmse_mm", if_finite(r.mirror_rmse_mm), "And its residual.");
-  v("handedness_determined", r.is_handedness_determined, "The mirror image fits clearly less well than the source.");
-  v("scale_at_limit", r.scale_at_limit, "The scale is at an end of its range.");
-  v("scale_suspicious", r.is_scale_suspicious, "Outside 0.95 to 1.05: both sensors are metric.");
-  v.derived("certificate", if_found(r.certificate), "How well the pose is determined.");
-  v.bulk("residuals_mm", r.residuals_mm, "Distances along the normals, target to source.");
+  v.derived("mirror_score", if_finite(r.mirror_score), "Score of the best pose found for the source's mirror image.");
+  v.derived("mirror_rmse_mm", if_finite(r.mirror_rmse_mm), "Residual (rms) of that pose.");
+  v("handedness_determined", r.is_handedness_determined,
+    "Whether the mirror image fits clearly less well than the source.");
+  v("scale_at_limit", r.scale_at_limit, "Whether the scale is at an end of its range.");
+  v("scale_suspicious", r.is_scale_suspicious,
+    "Whether the scale is outside 0.95 to 1.05, although both sensors are metric.");
+  v.derived("certificate", if_found(r.certificate), "How well the surfaces determine the pose.");
+  v.bulk("residuals_mm", r.residuals_mm, "Signed distances along the normals, from target to source.");
 }
 
 }  // namespace incise

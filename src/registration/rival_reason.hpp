@@ -10,7 +10,8 @@ namespace incise {
 [[nodiscard]] inline std::string rival_reason(double rival_score, double score) {
   if (score == 0.0)
     return fmt::format("another pose fits better: its score is {:.3f}, that of the pose found is 0", rival_score);
-  return fmt::format("another pose fits about as well: {:.0f} % of the score", 100.0 * rival_score / score);
+  return fmt::format("another pose fits about as well: its score is {:.0f} % of the score of the pose found",
+                     100.0 * rival_score / score);
 }
 
 }  // namespace incise

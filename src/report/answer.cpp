@@ -48,8 +48,8 @@ std::string counts_of(const std::vector<Finding>& findings) {
 
 std::string verdict_line(const ReportData& data) {
   if (!data.verdict) {
-    return "<p class=\"verdict none\" role=\"status\"><strong>Not judged</strong> No verdict is known of these "
-           "results.</p>\n";
+    return "<p class=\"verdict none\" role=\"status\"><strong>Not judged</strong> These results have no "
+           "verdict.</p>\n";
   }
   static constexpr std::array<const char*, 3> kWords{"OK", "Caution", "Refused"};
   const VerdictStatus status = data.verdict->status();
@@ -86,7 +86,7 @@ constexpr const char* kColorSwitch =
 const char* consequence_of(VerdictStatus status) {
   static constexpr std::array<const char*, 3> kWords{
       "Nothing that the simulation knows argues against this cut.",
-      "A robot program is written only if a person accepts each caution by its name.",
+      "A robot program is written only if a person accepts each caution by name.",
       "This cut must not be carried out: there is no robot program for it."};
   return kWords[static_cast<std::size_t>(status)];
 }
@@ -107,7 +107,7 @@ std::string answer_section(const ReportData& data) {
 std::string findings_section(const ReportData& data) {
   const std::vector<Finding> findings = findings_of(data);
   std::string html = "<section>\n<h2 id=\"findings\">Findings</h2>\n";
-  if (findings.empty()) return html + "<p class=\"missing\">There is no finding.</p>\n</section>\n";
+  if (findings.empty()) return html + "<p class=\"missing\">There are no findings.</p>\n</section>\n";
   html += fmt::format("<p class=\"lead\">{}, worst first. {}</p>\n<ul class=\"findings\">\n",
                       with_capital(counts_of(findings)), data.verdict ? consequence_of(data.verdict->status()) : "");
   for (const Finding& finding : findings) {
@@ -122,8 +122,8 @@ std::string findings_section(const ReportData& data) {
 std::string caveats_section(const ReportData& data) {
   if (data.caveats.empty()) return "";
   std::string html =
-      "<section>\n<h2 id=\"caveats\">What this does not know</h2>\n"
-      "<p class=\"lead\">This holds for every run like this one, whatever was found.</p>\n<ul>\n";
+      "<section>\n<h2 id=\"caveats\">What this report does not know</h2>\n"
+      "<p class=\"lead\">These limits apply to every run like this one, whatever it found.</p>\n<ul>\n";
   for (const std::string& caveat : data.caveats) html += "<li>" + escaped(caveat) + "</li>\n";
   return html + "</ul>\n</section>\n";
 }

@@ -28,7 +28,7 @@ void require_drawable(const ReplayPicture& p) {
   for (std::size_t i = 0; i < n; ++i) {
     INCISE_REQUIRE(p.tip_mm[i].allFinite() && std::isfinite(p.time_s[i]) && std::isfinite(p.tip_speed_mm_s[i]) &&
                        std::isfinite(p.deviation_mm[i]),
-                   fmt::format("expected finite numbers, found others at sample {}", i));
+                   fmt::format("expected finite numbers, found a non-finite one at sample {}", i));
   }
 }
 

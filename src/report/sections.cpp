@@ -179,9 +179,10 @@ std::string program_section(const ReportData& data) {
   html += value_table(data.program);
   if (!data.checks.empty()) html += "<h3>Safety checks</h3>\n" + check_table(data.checks);
   if (!data.program_figure.empty()) {
-    html += "<h3>As the player ran it</h3>\n<p>The program as written, run through incise's own kinematics and a model of the "
-            "controller; not on an arm.</p>\n<div class=\"figures\">\n<figure>" +
-            data.program_figure + "</figure>\n</div>\n" + value_table(data.replay);
+    html +=
+        "<h3>As the player ran it</h3>\n<p>The program as written, run by incise's own kinematics and a model of "
+        "the controller, not by an arm.</p>\n<div class=\"figures\">\n<figure>" +
+        data.program_figure + "</figure>\n</div>\n" + value_table(data.replay);
   }
   if (!data.program_text.empty()) {
     html += "<details><summary>Program text</summary><pre>" + escaped(data.program_text) + "</pre></details>\n";
@@ -216,7 +217,7 @@ std::string record_section(const ReportData& data) {
 }
 
 std::string page_footer() {
-  return "<footer>\n<p>Made by incise. This page is complete in itself and loads nothing from a network.</p>\n"
+  return "<footer>\n<p>Made by incise. This page is self-contained and loads nothing from a network.</p>\n"
          "<details><summary>Licence of the 3D library in this page</summary><pre>" +
          escaped(page::file("three_licence.txt")) + "</pre></details>\n</footer>\n";
 }

@@ -199,7 +199,7 @@ std::string value_table(std::span<const ReportValue> values) {
 std::string file_table(std::span<const ReportFile> files) {
   TableWriter table;
   table.header("file");
-  table.header("what it holds");
+  table.header("contents");
   for (const ReportFile& file : files) {
     table.row();
     table.raw(fmt::format("<a href=\"{0}\"><code>{0}</code></a>", escaped(file.path)));

@@ -159,7 +159,7 @@ class CourseChecker {
     if (path_.is_closed && program_.is_closed) {
       list_.at_most("closed", gap, kClosedToMm, "mm", cut_.back(), "gap between the end and the beginning of the ring");
     } else {
-      list_.holds("closed", false, "the path is open, and has to be a ring", cut_.back());
+      list_.holds("closed", false, "the path is open but must be a ring", cut_.back());
     }
   }
 
@@ -169,15 +169,15 @@ class CourseChecker {
     const auto pose = std::find_if(cut_.begin(), cut_.end(),
                                    [&](std::size_t i) { return program_.poses[i].waypoint >= widest.after; });
     list_.at_most("gap", widest.longest_mm, widest.limit_mm, "mm", pose == cut_.end() ? cut_.back() : *pose,
-                  "longest way from one waypoint of the ring to the next. A ring is taken to have evenly spaced "
-                  "waypoints: sample long straight sides as finely as its curves");
+                  "longest distance between neighbouring waypoints of the ring. The check assumes evenly spaced "
+                  "waypoints: sample long straight sides as finely as curves");
   }
 
   void self_crossing() {
     Contour course = entries_;
     if (program_.is_closed && course.points.size() > 1) course.points.pop_back();  // it does not repeat its first
     const auto place = first_crossing(course);
-    list_.holds("self_crossing", !place, "the course crosses itself nowhere, seen along the mean axis", place);
+    list_.holds("self_crossing", !place, "the course does not cross itself, seen along the mean axis", place);
   }
 
   void speed() {
@@ -212,36 +212,33 @@ class CourseChecker {
       if (difference > worst.value) at_worst = p.depth_mm;
       worst.see(difference, p.pose);
     }
-    list_.at_most(
-        "depth", worst.value, tolerance, "mm", worst.pose,
-        fmt::format("greatest difference between the depth that the path gives ({:.4g} mm there) and the planned {} mm",
-                    at_worst, planned));
+    list_.at_most("depth", worst.value, tolerance, "mm", worst.pose,
+                  fmt::format("greatest difference between the path's depth ({:.4g} mm there) and the planned {} mm",
+                              at_worst, planned));
   }
 
   void margin(const std::optional<double>& heat_half_width_mm) {
     if (path_.kind == PathKind::Mark) return edge_distance();
     if (!heat_half_width_mm) list_.not_made("heat beside the needle: power or tissue is not known");
     if (path_.tumor_edge.points.empty() && !settings_.must_be_ring)
-      return list_.not_made("margin to the tumour edge: the path holds none");
+      return list_.not_made("margin to the tumour edge: the path has none");
     if (path_.tumor_edge.points.size() < 3) {
       return list_.holds("margin", false,
-                         "the cut keeps away from a tumour edge, and the path holds none of three points or more");
+                         "the cut keeps clear of the tumour edge: the path has no tumour edge of three or more points");
     }
     if (!path_.tumor_edge.is_closed) {
-      list_.holds("margin", false,
-                  "the tumour edge is closed: this one is open, so that what lies inside it is not known");
+      list_.holds("margin", false, "the tumour edge is closed: this one is open, so its inside is not known");
     } else if (const auto at = first_crossing_in_view(path_.tumor_edge, axis_)) {
       list_.holds(
           "margin", false,
           fmt::format("the tumour edge is a simple curve, seen along the mean axis: it crosses itself at {}, so "
-                      "that what lies inside it is not known",
+                      "its inside is not known",
                       place_text(*at)));
     } else if (std::abs(signed_area_mm2(path_.tumor_edge, axis_)) < kLeastAreaMm2) {
-      list_.holds(
-          "margin", false,
-          fmt::format("the tumour edge has an area, seen along the mean axis: its {} points lie on a line or in "
-                      "one place",
-                      path_.tumor_edge.points.size()));
+      list_.holds("margin", false,
+                  fmt::format("the tumour edge has an area, seen along the mean axis: its {} points lie on a line or "
+                              "coincide",
+                              path_.tumor_edge.points.size()));
     } else {
       keeps_away(heat_half_width_mm);
     }
@@ -261,12 +258,12 @@ class CourseChecker {
       see(nearest_on(seen_edge, seen_along(axis_, p.tip_mm)).distance_mm, p.tip_mm, p.pose);
     }
     list_.at_least("margin", -closest.value, settings_.close_margin_mm, "mm", closest.pose,
-                   "least distance of the needle from the tumour edge, where it enters and of its tip as seen along "
-                   "the mean axis (negative: inside)");
+                   "least distance from the tumour edge of the needle's entry, and of its tip as seen along the mean "
+                   "axis (negative: inside)");
     if (!heat_half_width_mm) return;
     list_.at_least("heat", -closest.value, *heat_half_width_mm, "mm", closest.pose,
-                   "the same distance, against how far beside the needle heat damages tissue where the path is slowest "
-                   "and shallowest");
+                   "the same distance; the limit is how far beside the needle heat damages tissue where the path is "
+                   "slowest and shallowest");
   }
 
   void encloses() {
@@ -289,19 +286,19 @@ class CourseChecker {
     }
     const Vec3& point = path_.tumor_edge.points[*farthest.pose];
     list_.at_most("encloses", farthest.value, settings_.max_edge_height_mm, "mm", pose_next_to(nearest_on(ring, point)),
-                  fmt::format("the ring goes round the tumour edge, seen along the mean axis; the edge's point that is "
-                              "farthest from its height lies {} it, at {}",
+                  fmt::format("the ring goes round the tumour edge, seen along the mean axis; the edge's point that "
+                              "differs most in height lies {} the ring, at {}",
                               height_above(ring, point) < 0.0 ? "below" : "above", place_text(point)));
   }
 
   void deviation(const ToolPath* intended) {
-    if (intended == nullptr) return list_.not_made("deviation from the intended path: none was given");
+    if (intended == nullptr) return list_.not_made("deviation from the intended path: no intended path was given");
     const Contour course = entry_contour(*intended);
     Worst worst;
     for (const CoursePlace& p : places_) worst.see(nearest_on(course, p.entry_mm).distance_mm, p.pose);
     for (const Vec3& point : course.points) worst.see(nearest_on(entries_, point).distance_mm, cut_.back());
     list_.at_most("deviation", worst.value, settings_.max_deviation_mm, "mm", worst.pose,
-                  "greatest distance of the course from the intended one, and of that from the course");
+                  "greatest distance between the course and the intended one, measured from each to the other");
   }
 
   /// Robot and tissue are on or above the table, so a tool that comes from below indicates a wrong frame.
@@ -337,7 +334,7 @@ class CourseChecker {
  private:
   void edge_distance() {
     if (path_.tumor_edge.points.size() < 2) {
-      return list_.holds("edge_distance", false, "a mark follows the tumour edge, and the path holds none");
+      return list_.holds("edge_distance", false, "a mark follows the tumour edge: the path has none");
     }
     Worst farthest;
     for (const CoursePlace& p : places_) farthest.see(nearest_on(path_.tumor_edge, p.entry_mm).distance_mm, p.pose);
@@ -352,7 +349,7 @@ class CourseChecker {
       farthest.see(place.distance_mm, pose_next_to(place));
     }
     list_.at_most("edge_distance", farthest.value, settings_.mark_distance_mm, "mm", farthest.pose,
-                  "greatest distance of the mark from the tumour edge, and of that from the mark");
+                  "greatest distance between the mark and the tumour edge, measured from each to the other");
   }
 
   /// Height of `point` above the nearest place of the ring, against the mean axis, mm; negative below it.
@@ -435,9 +432,9 @@ double tilt_deg(const Vec3& axis) {
 std::string ProgramCheck::message() const {
   std::string where;
   if (waypoint) where = fmt::format(" at waypoint {} (pose {})", *waypoint, *pose);
-  if (relation.empty()) return fmt::format("{}: not so{}: {}", name, where, text);
+  if (relation.empty()) return fmt::format("{}: not satisfied{}: {}", name, where, text);
   const std::string with_unit = unit.empty() ? "" : " " + unit;
-  return fmt::format("{}: {:.4g}{}{}, has to be {} {:.4g}{}: {}", name, value, with_unit, where, relation, limit,
+  return fmt::format("{}: {:.4g}{}{}, must be {} {:.4g}{}: {}", name, value, with_unit, where, relation, limit,
                      with_unit, text);
 }
 
@@ -463,7 +460,7 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
                             const CheckInputs& inputs) {
   INCISE_REQUIRE(cut_poses(program).size() >= 2, "expected a program with a cut, found none");
   INCISE_REQUIRE(inputs.intended == nullptr || inputs.intended->frame == path.frame,
-                 "expected the intended path in the frame of the path");
+                 "expected the intended path in the same frame as the path");
   ProgramChecks result;
   result.settings = settings;
   result.not_made = {
@@ -473,18 +470,18 @@ ProgramChecks check_program(const RobotProgram& program, const ToolPath& path, c
       "how well the controller keeps to the program (see the player)"};
   CheckList list(program, result);
   if (!check_finite(list)) {
-    result.not_made.insert(result.not_made.begin(), "all others: the program holds numbers that are not finite");
+    result.not_made.insert(result.not_made.begin(), "all others: the program contains numbers that are not finite");
     return result;
   }
   list.holds("frame", path.frame == PathFrame::Robot,
-             fmt::format("the path's frame is {}, and has to be robot", to_string(path.frame)));
+             fmt::format("the path's frame is {}; it must be robot", to_string(path.frame)));
   CourseChecker course(list, path, settings);
   if (settings.must_be_ring) {
     course.closed();
     course.gap();
   } else {
-    list.not_made(path.kind == PathKind::Mark ? "closed, gap: the path is not asked to be a ring"
-                                              : "closed, gap, encloses: the path is not asked to be a ring");
+    list.not_made(path.kind == PathKind::Mark ? "closed, gap: the path need not be a ring"
+                                              : "closed, gap, encloses: the path need not be a ring");
   }
   course.self_crossing();
   course.speed();

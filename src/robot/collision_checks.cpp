@@ -140,7 +140,8 @@ void check_surface(CheckList& list, const TriMesh& surface, const std::vector<Hu
   else
     list.not_made("shaft: the tool has none behind its needle");
   add("needle", needle, settings.needle_clearance_mm,
-      fmt::format("least distance of the needle from the surface, in the air and from {} mm above its entry on",
+      fmt::format("least distance of the needle from the surface; in the tissue, only of the part more than {} mm "
+                  "above the entry",
                   program.settings.clearance_mm));
 }
 
@@ -148,7 +149,7 @@ void check_surface(CheckList& list, const TriMesh& surface, const std::vector<Hu
 
 void check_collisions(CheckList& list, const TriMesh* surface, const CheckSettings& settings) {
   if (list.program().motion.outcome != MotionOutcome::Found)
-    return list.not_made("self_collision, base, surface_collision, shaft, needle: there is no motion of the arm");
+    return list.not_made("self_collision, base, surface_collision, shaft, needle: no motion of the arm was found");
   const std::vector<Hulls> hulls = hulls_of(list.program(), settings);
   check_pairs(list, "self_collision", self_pairs(), hulls, settings.arm_clearance_mm,
               "the hulls of the arm's links and of the instrument from each other");

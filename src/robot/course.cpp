@@ -34,8 +34,9 @@ ToolFrame::ToolFrame(const ToolPath& path, const Vec3& hint, double spin_rad) {
                  "expected tool axes with a mean direction, found axes that cancel out");
   mean_ = sum.normalized();
   for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
-    INCISE_REQUIRE(mean_.dot(path.waypoints[i].axis) > kLeastCosine,
-                   fmt::format("expected tool axes within 120 degrees of their mean, found another at waypoint {}", i));
+    INCISE_REQUIRE(
+        mean_.dot(path.waypoints[i].axis) > kLeastCosine,
+        fmt::format("expected tool axes within 120 degrees of their mean, found a larger angle at waypoint {}", i));
   }
   R_mean_ = Eigen::AngleAxisd(spin_rad, mean_).toRotationMatrix() * rotation_with(mean_, hint);
 }

@@ -55,7 +55,7 @@ void check_tip_speed(CheckList& list, const CheckSettings& settings) {
   }
   if (worst.pose) {
     list.at_most("tip_speed", worst.value, settings.tip_speed_tolerance, "", worst.pose,
-                 "greatest departure of the tip's speed from the nominal one, as a share, away from ends and changes");
+                 "greatest deviation of the tip's speed from the nominal one, as a share, away from ends and changes");
   } else {
     list.not_made("tip_speed: the cut is shorter than its ramps");
   }
@@ -70,12 +70,12 @@ void check_motion(CheckList& list, const CheckSettings& settings) {
     list.holds(
         "reach", false,
         motion.outcome == MotionOutcome::Unreachable
-            ? fmt::format("the arm cannot get there on any branch and with any turn of the tool about its axis ({})",
+            ? fmt::format("the arm cannot reach this pose on any branch with any turn of the tool about its axis ({})",
                           motion.reason)
             : "the arm's joints would jump: " + motion.reason,
         motion.failed_pose);
     list.not_made(
-        "joint limits, speeds, accelerations, singularities, tip speed and table: there is no motion of the arm");
+        "joint limits, speeds, accelerations, singularities, tip speed and table: no motion of the arm was found");
     return;
   }
   list.holds("reach", true, fmt::format("every pose is reached on one branch: {}", to_string(motion.branch)));
@@ -112,7 +112,7 @@ void check_depth_in(CheckList& list, const TriMesh& surface, double depth_mm, do
     if (!is_in_tissue) continue;
     const auto depth = probe.depth_mm(pose.tip_mm, pose.R_robot_tool.col(2));
     if (!depth) {
-      list.holds("depth", false, "the surface has a gap below the tool: its depth is not known there", i);
+      list.holds("depth", false, "the surface has a gap below the tool: the tool's depth is not known there", i);
       return;
     }
     worst.see(std::abs(*depth - depth_mm), i);

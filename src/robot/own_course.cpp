@@ -203,20 +203,19 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
   const bool is_at_full_speed = settings.speed_slider == 1.0;  // a slowed arm has not arrived when its stream ends
   if (conduct.deviation_mm.value > settings.max_deviation_mm) {
     end(replay, ReplayOutcome::OffCourse,
-        fmt::format(
-            "at {:.2f} s the tip is {:.2f} mm off the course in its header, at most {} mm are allowed",
-            conduct.deviation_mm.time_s, conduct.deviation_mm.value, settings.max_deviation_mm));
+        fmt::format("at {:.2f} s the tip is {:.2f} mm off the course in the header; at most {} mm are allowed",
+                    conduct.deviation_mm.time_s, conduct.deviation_mm.value, settings.max_deviation_mm));
   } else if (conduct.lean_deg.value > settings.max_lean_deg) {
     end(replay, ReplayOutcome::WrongAxis,
-        fmt::format("at {:.2f} s the tool leans {:.1f} degrees from its intended axis, at most {} are allowed",
+        fmt::format("at {:.2f} s the tool leans {:.1f} degrees from its intended axis; at most {} are allowed",
                     conduct.lean_deg.time_s, conduct.lean_deg.value, settings.max_lean_deg));
   } else if (conduct.way_back_mm.value > settings.max_way_back_mm) {
     end(replay, ReplayOutcome::WrongOrder,
-        fmt::format("at {:.2f} s the tip has gone back {:.2f} mm on its course", conduct.way_back_mm.time_s,
+        fmt::format("at {:.2f} s the tip has gone back {:.2f} mm along its course", conduct.way_back_mm.time_s,
                     conduct.way_back_mm.value));
   } else if (is_at_full_speed && left_mm > settings.max_way_left_mm) {
     end(replay, ReplayOutcome::WrongOrder,
-        fmt::format("{:.2f} mm of its course are left out at the {}", left_mm,
+        fmt::format("the program leaves out {:.2f} mm of its course at the {}", left_mm,
                     left_mm == conduct.first_arc_mm ? "beginning" : "end"));
   } else if (conduct.too_fast.value > 0.0 || conduct.too_slow.value > 0.0) {
     const bool is_fast = conduct.too_fast.value > 0.0;
@@ -225,11 +224,11 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
         fmt::format("at {:.2f} s the tip is {} than the intended {} mm/s, by {:.3g} mm/s more than the tolerance",
                     worst.time_s, is_fast ? "faster" : "slower", worst.limit, worst.value));
   } else if (const ScriptCommand* command = hasty_command(program)) {
-    end(replay, ReplayOutcome::WrongSpeed, "a move with more acceleration or speed than the program was made with",
+    end(replay, ReplayOutcome::WrongSpeed, "a move has more acceleration or speed than the program was made with",
         command->line);
   } else if (is_at_full_speed && conduct.rest_s > program.record->settings.dwell_s + settings.max_rest_s) {
     end(replay, ReplayOutcome::RestsInTissue,
-        fmt::format("the tip rests in the tissue for {:.2f} s, intended are {} s", conduct.rest_s,
+        fmt::format("the tip rests in the tissue for {:.2f} s; the intended rest is {} s", conduct.rest_s,
                     program.record->settings.dwell_s));
   }
 }
@@ -289,7 +288,7 @@ void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel&
     if (limit.found >= limit.least || is_overridden(program.header, limit.name)) continue;
     return end(
         replay, ReplayOutcome::BreaksLimit,
-        fmt::format("{}: {:.4g} at {:.2f} s, has to be >= {:.4g}", limit.name, limit.found, limit.time_s, limit.least));
+        fmt::format("{}: {:.4g} at {:.2f} s, must be >= {:.4g}", limit.name, limit.found, limit.time_s, limit.least));
   }
 }
 

@@ -60,7 +60,7 @@ class Playing {
     if (replay_.outcome != ReplayOutcome::Completed || replay_.max_joint_speed_share <= 1.0 + kRounding) return;
     end(ReplayOutcome::JointSpeed, fastest_line_);
     replay_.reason =
-        fmt::format("{} at {:.3g} times the speed that it can turn with",
+        fmt::format("{} turns at {:.3g} times its greatest speed",
                     arm_.joint_names[static_cast<std::size_t>(fastest_joint_)], replay_.max_joint_speed_share);
   }
 
@@ -98,7 +98,8 @@ class Playing {
   bool has_time_for(double duration_s, std::size_t line) {
     if (time_ + duration_s <= kLongestProgramS) return true;
     end(ReplayOutcome::TooLong, line);
-    replay_.reason = fmt::format("{:.4g} s and more, at most {} s are played", time_ + duration_s, kLongestProgramS);
+    replay_.reason = fmt::format("the program takes {:.4g} s or more; at most {} s are played", time_ + duration_s,
+                                 kLongestProgramS);
     return false;
   }
 
@@ -106,7 +107,7 @@ class Playing {
     for (int i = 0; i < 6; ++i) {
       if (q_[i] >= arm_.min_rad[i] - kWithinRad && q_[i] <= arm_.max_rad[i] + kWithinRad) continue;
       end(ReplayOutcome::JointLimits, line);
-      replay_.reason = fmt::format("{} at {:.1f} degrees, which its limits of {:.0f} to {:.0f} leave out",
+      replay_.reason = fmt::format("{} at {:.1f} degrees, outside its limits of {:.0f} to {:.0f}",
                                    arm_.joint_names[static_cast<std::size_t>(i)], units::deg_from_rad(q_[i]),
                                    units::deg_from_rad(arm_.min_rad[i]), units::deg_from_rad(arm_.max_rad[i]));
       return false;
@@ -242,21 +243,22 @@ void describe(Visitor& v, Replay& r) {
   const auto if_known = [is_course_known](double value) {
     return is_course_known ? std::optional(value) : std::nullopt;
   };
-  v("outcome", r.outcome, "How it ended.");
+  v("outcome", r.outcome, "How the replay ended.");
   v.derived("line", r.line > 0 ? std::optional(r.line) : std::nullopt,
-            "Where it ended too early or asks for too much.");
-  v("reason", r.reason, "What was found, where the outcome alone does not say it.");
-  v.derived("speed_slider_percent", 100.0 * s.speed_slider, "Of the controller.");
-  v.derived("duration_s", r.duration_s(), "Of the whole program.");
-  v.derived("max_deviation_mm", if_known(r.max_deviation_mm), "Of the tip from the intended course.");
-  v.derived("max_deviation_at_s", if_known(r.max_deviation_at_s), "When.");
-  v.derived("mean_deviation_mm", if_known(r.mean_deviation_mm), "In the cut.");
-  v.derived("max_cut_deviation_mm", if_known(r.max_cut_deviation_mm), "In the cut; without one: over all of it.");
-  v({"allowed_deviation_mm", "For a success.", "mm"}, s.max_deviation_mm);
-  v("tip_speed_mm_s", r.tip_speed_mm_s, "In the cut, away from its ends.");
-  v({"end_zone_mm", "Of the cut at either end, where the tip speeds up and slows down.", "mm"}, s.end_zone_mm);
-  v("max_joint_speed_share", r.max_joint_speed_share, "Of the joints' limits.");
-  v.derived("min_singular_value", if_finite(r.min_singular_value), "Of the arm's Jacobian.");
+            "Line of the program that ends the replay early or demands too much.");
+  v("reason", r.reason, "Explanation of the outcome, if it needs one.");
+  v.derived("speed_slider_percent", 100.0 * s.speed_slider, "Setting of the controller's speed slider, per cent.");
+  v.derived("duration_s", r.duration_s(), "Duration of the whole program.");
+  v.derived("max_deviation_mm", if_known(r.max_deviation_mm), "Greatest distance of the tip from the intended course.");
+  v.derived("max_deviation_at_s", if_known(r.max_deviation_at_s), "Time of the greatest deviation.");
+  v.derived("mean_deviation_mm", if_known(r.mean_deviation_mm), "Mean distance in the cut.");
+  v.derived("max_cut_deviation_mm", if_known(r.max_cut_deviation_mm),
+            "Greatest distance in the cut; without a cut, in the whole program.");
+  v({"allowed_deviation_mm", "Greatest distance allowed for a success.", "mm"}, s.max_deviation_mm);
+  v("tip_speed_mm_s", r.tip_speed_mm_s, "Speed of the tip in the cut, away from its ends.");
+  v({"end_zone_mm", "Length of the cut at either end in which the tip speeds up or slows down.", "mm"}, s.end_zone_mm);
+  v("max_joint_speed_share", r.max_joint_speed_share, "Greatest joint speed, as a share of the joint's limit.");
+  v.derived("min_singular_value", if_finite(r.min_singular_value), "Smallest singular value of the arm's Jacobian.");
   v.bulk("samples", r.samples, "Joints and tip over time.");
   v.bulk("intended_mm", r.intended_mm, "The intended course of the tip.");
 }

@@ -93,7 +93,7 @@ std::size_t moves_for(const TipCurve& curve, const ProgramSettings& settings) {
     const double factor = std::clamp(std::sqrt(error / settings.chord_error_mm), 1.1, 2.0);
     moves = static_cast<std::size_t>(std::ceil(static_cast<double>(moves) * factor));
     INCISE_REQUIRE(curve.length_mm() / static_cast<double>(moves) > 0.01,
-                   fmt::format("expected a course that moves of 0.01 mm or more can follow to {} mm, found {} mm off",
+                   fmt::format("expected a course that moves of 0.01 mm or more can follow within {} mm, found {} mm",
                                settings.chord_error_mm, error));
   }
   INCISE_REQUIRE(false, "expected a course that straight moves can follow");

@@ -85,7 +85,7 @@ class Auditor {
     try {
       make_again();
     } catch (const InvalidArgument& error) {
-      contradict("no program can be made of its header: " + error.as_hint());
+      contradict("no program can be made from its header: " + error.as_hint());
     }
     return std::move(audit_);
   }
@@ -108,7 +108,7 @@ class Auditor {
       if (key != "check") continue;
       const auto claim = claim_of(value);
       if (!claim)
-        contradict(fmt::format("'{}' is no line of a check", value));
+        contradict(fmt::format("'{}' is not a line of a check", value));
       else if (!claims_.emplace(*claim).second)
         contradict(fmt::format("{} is listed twice", claim->first));
       else if (!claim->second.is_passed)
@@ -119,7 +119,7 @@ class Auditor {
       const auto claim = claims_.find(name);
       const bool is_told =
           claim != claims_.end() ? claim->second.text == listed : robot_detail::is_overridden(program_.header, name);
-      if (!is_told) contradict(fmt::format("the list of checks says '{}', the header does not", listed));
+      if (!is_told) contradict(fmt::format("the list of checks says '{}', but the header does not", listed));
     }
   }
 
@@ -143,14 +143,14 @@ class Auditor {
       if (severity == kRefused || worst == kOk) worst = severity;
       if (severity == to_string(VerdictStatus::Caution) &&
           std::find(accepted.begin(), accepted.end(), id) == accepted.end())
-        contradict(fmt::format("its caution '{}' was accepted by nobody", id));
+        contradict(fmt::format("nobody accepted its caution '{}'", id));
     }
     if (verdicts.size() != 1)
-      return contradict(fmt::format("{} lines of a verdict on the cut, expected one", verdicts.size()));
+      return contradict(fmt::format("found {} lines with a verdict on the cut, expected one", verdicts.size()));
     if (verdicts.front() == kRefused || worst == kRefused)
       return contradict("the simulated cut is refused: no program is written for it");
     if (verdicts.front() != worst)
-      contradict(fmt::format("its verdict is {}, that of its reasons {}", verdicts.front(), worst));
+      contradict(fmt::format("its verdict is {}, but its reasons give {}", verdicts.front(), worst));
   }
 
   void list_moved_limits() {
@@ -186,7 +186,7 @@ class Auditor {
       if (needs_more(name))
         audit_.not_recomputed.push_back(name);
       else
-        contradict(fmt::format("'{}' is no check of such a program", claim.text));
+        contradict(fmt::format("'{}' is not a check of such a program", claim.text));
     }
     hold_numbers(made);
     hold_motion(made);
@@ -202,14 +202,14 @@ class Auditor {
   void hold(const ProgramCheck& check) {
     if (robot_detail::is_overridden(program_.header, check.name)) return;
     const auto at = claims_.find(check.name);
-    if (at == claims_.end()) return contradict(fmt::format("nothing is said of {}", check.name));
+    if (at == claims_.end()) return contradict(fmt::format("the header does not mention {}", check.name));
     const Claim& claim = at->second;
     if (!check.passed) return contradict(fmt::format("'{}', but: {}", claim.text, check.message()));
     const bool is_same_kind = claim.value.has_value() == !check.relation.empty();
     const double scale = std::max(std::abs(check.value), std::abs(check.limit));
     if (!is_same_kind || (claim.value && (!is_same(*claim.value, check.value, scale) ||
                                           !is_same(*claim.limit, check.limit, check.limit))))
-      contradict(fmt::format("'{}', made again '{}'", claim.text, robot_detail::held_against_its_limit(check)));
+      contradict(fmt::format("'{}', recomputed '{}'", claim.text, robot_detail::held_against_its_limit(check)));
   }
 
   /// Compares the header's own numbers, and the poses of JSON.
@@ -225,11 +225,11 @@ class Auditor {
       char* end = nullptr;
       const double number = std::strtod(text.c_str(), &end);
       if (end == text.c_str() || *end != '\0' || !is_same(number, value, 0.0))
-        contradict(fmt::format("{} {}, made again {:.6f}", key, text, value));
+        contradict(fmt::format("{} {}, recomputed {:.6f}", key, text, value));
     }
     for (const auto& [key, value] :
          {std::pair("branch", to_string(made.motion.branch)), std::pair("robot", made.setup.arm.name)})
-      if (told(key) != value) contradict(fmt::format("{} {}, made again {}", key, told(key), value));
+      if (told(key) != value) contradict(fmt::format("{} {}, recomputed {}", key, told(key), value));
     if (program_.listed_poses.empty()) return;
     bool is_same_course = program_.listed_poses.size() == made.poses.size();
     for (std::size_t i = 0; is_same_course && i < made.poses.size(); ++i)
@@ -280,7 +280,7 @@ class Auditor {
         ++k;
       } else {
         const std::string where = i < found.size() ? fmt::format("line {}", found[i].line) : "its end";
-        return contradict(where + ": another statement than is written for the path in the header");
+        return contradict(where + ": not the statement that incise writes for the path in the header");
       }
     }
   }
@@ -314,10 +314,10 @@ class Auditor {
                                (!row.tip_mm || (*row.tip_mm - tip).norm() <= kSamePlaceMm) &&
                                (!row.acceleration_rad_s2 || is_at_or_beside(i, samples.size(), is_same_acceleration)) &&
                                is_at_or_beside(i, samples.size(), is_same_phase);
-      if (!is_same_row) return contradict(fmt::format("row {}: other joints than those for the path in the header", i));
+      if (!is_same_row) return contradict(fmt::format("row {}: not the joints for the path in the header", i));
     }
     if (rows.size() != samples.size())
-      contradict(fmt::format("{} rows, for the path in the header {} are written", rows.size(), samples.size()));
+      contradict(fmt::format("{} rows, but the path in the header gives {}", rows.size(), samples.size()));
   }
 
   static bool is_same_command(const ScriptCommand& found, const std::vector<ScriptCommand>& expected, std::size_t i) {
@@ -358,7 +358,7 @@ void judge_audit(Replay& replay, const ProgramAudit& audit) {
   if (replay.outcome != ReplayOutcome::Completed) return;
   if (audit.digest == ProgramDigest::Differs) {
     replay.outcome = ReplayOutcome::Altered;
-    replay.reason = "its digest is another: it was changed after it was checked";
+    replay.reason = "its digest differs: the program was changed after it was checked";
   } else if (!audit.contradictions.empty()) {
     replay.outcome = ReplayOutcome::FalseChecks;
     replay.reason = audit.contradictions.front();

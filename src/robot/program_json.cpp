@@ -29,16 +29,16 @@ void describe_limit(Visitor& v, const Field& field, double& value) {
 }
 void describe(Visitor& v, ProgramCheckEntry& entry) {
   ProgramCheck& c = entry.check;
-  v("name", c.name, "Of the check.");
-  v("passed", c.passed, "Whether the program keeps to it.");
-  v.derived("overridden", c.is_overridden, "Whether a person has taken it on them.");
-  describe_limit(v, {"value", "What was found."}, c.value);
-  describe_limit(v, {"limit", "What is allowed."}, c.limit);
-  v("relation", c.relation, "Between the two; empty: a plain yes or no.");
-  v("unit", c.unit, "Of both.");
-  v.derived("pose", c.pose, "The worst one.");
-  v.derived("waypoint", c.waypoint, "Of the path, at or before that pose.");
-  v.derived("text", c.text, "For a person.");
+  v("name", c.name, "Name of the check.");
+  v("passed", c.passed, "Whether the program passes the check.");
+  v.derived("overridden", c.is_overridden, "Whether a person has taken responsibility for the failed check.");
+  describe_limit(v, {"value", "Value that was found."}, c.value);
+  describe_limit(v, {"limit", "Limit of the value."}, c.limit);
+  v("relation", c.relation, "Relation that the value must have to the limit; empty: a yes or no.");
+  v("unit", c.unit, "Unit of the value and the limit.");
+  v.derived("pose", c.pose, "Index of the worst pose of the program.");
+  v.derived("waypoint", c.waypoint, "Index of the path's waypoint at or before that pose.");
+  v.derived("text", c.text, "Meaning of the check, for a person.");
 }
 
 struct PoseEntry {
@@ -46,13 +46,13 @@ struct PoseEntry {
 };
 void describe(Visitor& v, PoseEntry& entry) {
   ProgramPose& p = entry.pose;
-  v("phase", p.phase, "Of the program.");
-  v({"time_s", "From the start.", "s"}, p.time_s);
-  v({"tip_mm", "Of the tool.", "mm"}, p.tip_mm);
-  v({"rotation_vector", "Of the tool.", "rad"}, p.rotation_vector);
-  v({"tip_speed_mm_s", "Of the move that ends here.", "mm/s"}, p.tip_speed_mm_s);
-  v({"depth_mm", "Of the tip below the surface; negative above it.", "mm"}, p.depth_mm);
-  v.derived("waypoint", p.waypoint, "Of the path, at or before this pose.");
+  v("phase", p.phase, "Phase of the program.");
+  v({"time_s", "Time from the start of the program.", "s"}, p.time_s);
+  v({"tip_mm", "Position of the tool's tip.", "mm"}, p.tip_mm);
+  v({"rotation_vector", "Orientation of the tool.", "rad"}, p.rotation_vector);
+  v({"tip_speed_mm_s", "Speed of the tip in the move that ends at this pose.", "mm/s"}, p.tip_speed_mm_s);
+  v({"depth_mm", "Depth of the tip below the surface; negative above it.", "mm"}, p.depth_mm);
+  v.derived("waypoint", p.waypoint, "Index of the path's waypoint at or before this pose.");
 }
 
 /// Time (s), six joints (rad) and their speeds (rad/s).
@@ -63,17 +63,18 @@ struct MotionEntry {
 };
 void describe(Visitor& v, MotionEntry& entry) {
   const JointMotion& m = entry.motion;
-  v.derived("outcome", m.outcome, "Whether the arm can follow.");
-  if (!v.sets() && m.outcome != MotionOutcome::Found) return v.derived("reason", m.reason, "Why it cannot.");
-  v.derived("branch", std::string(to_string(m.branch)), "Of the inverse kinematics.");
-  v.derived("spin_deg", m.spin_deg, "Of the tool about its axis.");
-  v.derived("period_s", m.period_s, "Between two samples.");
-  v.derived("min_singular_value", m.min_singular_value, "Of the arm's Jacobian.");
-  v.derived("min_joint_margin_deg", m.min_joint_margin_deg, "From the joints' limits.");
-  v.derived("min_table_clearance_mm", m.min_table_clearance_mm, "Of the links' hulls.");
-  v.derived("joint_travel_deg", m.travel_deg, "Sum of the ways of all joints.");
-  v.derived("columns", std::string("time_s, six joints rad, six joint speeds rad/s"), "Of the samples.");
-  v("samples", entry.rows, "One row at a time.");
+  v.derived("outcome", m.outcome, "Whether the arm can follow the program.");
+  if (!v.sets() && m.outcome != MotionOutcome::Found)
+    return v.derived("reason", m.reason, "Why the arm cannot follow the program.");
+  v.derived("branch", std::string(to_string(m.branch)), "Branch of the inverse kinematics.");
+  v.derived("spin_deg", m.spin_deg, "Spin of the tool about its axis.");
+  v.derived("period_s", m.period_s, "Time between two samples.");
+  v.derived("min_singular_value", m.min_singular_value, "Smallest singular value of the arm's Jacobian.");
+  v.derived("min_joint_margin_deg", m.min_joint_margin_deg, "Least distance of a joint from its limits.");
+  v.derived("min_table_clearance_mm", m.min_table_clearance_mm, "Least height of the links' hulls above the table.");
+  v.derived("joint_travel_deg", m.travel_deg, "Sum of the travel of all joints.");
+  v.derived("columns", std::string("time_s, six joints rad, six joint speeds rad/s"), "Columns of the samples.");
+  v("samples", entry.rows, "Samples of the joints, one row for each time.");
 }
 
 struct ProgramFile {
@@ -87,20 +88,20 @@ struct ProgramFile {
 void describe(Visitor& v, ProgramFile& file) {
   const RobotProgram& p = file.program;
   constant(v, {"schema", "Format and version of this file."}, kSchema);
-  v.derived("frame", PathFrame::Robot, "Whose coordinates poses have.");
-  const Field header{.name = "header", .meaning = "Key and value, as in a script.", .is_omitted = true};
+  v.derived("frame", PathFrame::Robot, "Frame of the poses.");
+  const Field header{.name = "header", .meaning = "Keys and values of the header, as in a script.", .is_omitted = true};
   if (v.sets() || v.optional(header, !file.header.empty())) v(header, file.header);
   v.derived("kind", p.kind, "What the tool does along the path.");
   v.derived("closed", p.is_closed, "Whether the path is a ring.");
-  v.derived("duration_s", p.duration_s(), "Of all.");
-  v.derived("cut_length_mm", p.cut_length_mm, "Once along the path.");
-  v.derived("overlap_mm", p.overlap_mm, "Beyond the start of a closed path.");
-  v.derived("spacing_mm", p.spacing_mm, "Of the poses along the cut.");
-  v.derived("chord_error_mm", p.chord_error_mm, "Of the moves from the smooth course.");
-  v("poses", file.poses, "In order.");
-  v("motion", file.motion, "Of the arm's joints.");
-  v({.name = "checks", .meaning = "What the program was held against.", .is_omitted = true}, file.checks);
-  v({.name = "checks_not_made", .meaning = "For want of what.", .is_omitted = true}, file.not_made);
+  v.derived("duration_s", p.duration_s(), "Duration of the whole program.");
+  v.derived("cut_length_mm", p.cut_length_mm, "Length of the path, without overlap.");
+  v.derived("overlap_mm", p.overlap_mm, "Distance that a closed path is cut beyond its start.");
+  v.derived("spacing_mm", p.spacing_mm, "Spacing of the poses along the cut.");
+  v.derived("chord_error_mm", p.chord_error_mm, "Greatest deviation of the moves from the smooth course.");
+  v("poses", file.poses, "Poses in the order of the program.");
+  v("motion", file.motion, "Motion of the arm's joints.");
+  v({.name = "checks", .meaning = "Checks that were made of the program.", .is_omitted = true}, file.checks);
+  v({.name = "checks_not_made", .meaning = "Checks that were not made, and why.", .is_omitted = true}, file.not_made);
 }
 
 }  // namespace

@@ -169,7 +169,8 @@ void read_header(WrittenProgram& program, const std::filesystem::path& file) {
       const auto n = numbers_of(value, 16, file, key);
       const Mat4 T = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(n.data());
       if (!program.commands.empty() && (T - program.T_flange_tool).norm() > kSameToolMm)
-        throw DataError(file, "set_tcp", "another tool than in the header", "the tool of the header's T_flange_tool");
+        throw DataError(file, "set_tcp", "a tool that differs from the header's",
+                        "the tool of the header's T_flange_tool");
       program.T_flange_tool = T;
       has_tool = true;
     } else if (key == "waypoint") {
@@ -261,14 +262,13 @@ WrittenProgram program_from_text(std::string_view text, const std::filesystem::p
   const std::string ending = name.extension().string();
   if (ending == ".yaml" || ending == ".yml" || ending == ".bag") {
     throw DataError(name, "", fmt::format("a {} program", ending), "URScript, .csv or .json",
-                    "What ROS runs holds the joints of --format joint-csv: export and replay these.");
+                    "A ROS file has the same joints as --format joint-csv: export and replay that.");
   }
   if (const std::size_t hidden = robot_detail::first_hidden(text); hidden != std::string_view::npos) {
     const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(hidden), '\n');
-    throw DataError(
-        name, fmt::format("line {}", line),
-        fmt::format("byte 0x{:02X}, of a character that is not shown", static_cast<unsigned char>(text[hidden])),
-        "what `incise export` writes", "Another reader might run what follows it.");
+    throw DataError(name, fmt::format("line {}", line),
+                    fmt::format("byte 0x{:02X} of an invisible character", static_cast<unsigned char>(text[hidden])),
+                    "what `incise export` writes", "Another reader might run the text after it.");
   }
   WrittenProgram program = ending == ".csv"    ? robot_detail::read_joint_csv(text, name)
                            : ending == ".json" ? robot_detail::read_program_json(text, name)

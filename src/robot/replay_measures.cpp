@@ -148,7 +148,7 @@ void judge_deviation(Replay& replay, double max_deviation_mm) {
   if (replay.outcome != ReplayOutcome::Completed || replay.max_cut_deviation_mm <= max_deviation_mm) return;
   replay.outcome = ReplayOutcome::OffCourse;
   replay.reason =
-      fmt::format("the tip is up to {:.2f} mm off the intended course in the cut, at most {} mm are allowed",
+      fmt::format("the tip is up to {:.2f} mm off the intended course in the cut; at most {} mm are allowed",
                   replay.max_cut_deviation_mm, max_deviation_mm);
 }
 

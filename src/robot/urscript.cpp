@@ -109,9 +109,8 @@ std::string to_urscript(const RobotProgram& program, const ProgramHeader& header
       "# Units: m, s, rad, m/s, m/s^2. Poses p[x, y, z, rx, ry, rz] of the tool's tip in the base frame, rotation as "
       "axis "
       "times angle.\n"
-      "# The electrode is not switched. See that the way to the start is clear: it is run in joints from wherever the "
-      "arm "
-      "stands.\n";
+      "# The program does not switch the electrode. Make sure that the way to the start is clear: the arm moves "
+      "there in joint space from wherever it is.\n";
   text += fmt::format("def {}():\n", settings.function_name) + tcp_line(program.setup.T_flange_tool);
   text += fmt::format("  movej({}, a={:.4f}, v={:.4f})\n", joints_text(program.motion.samples.front().q_rad),
                       robot_detail::kStartAcceleration, robot_detail::kStartSpeed);

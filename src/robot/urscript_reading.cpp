@@ -206,7 +206,7 @@ class ScriptReader {
 
   void add(ScriptCommand command) {
     if (program_.commands.empty() && command.kind != ScriptCommand::Kind::MoveJ)
-      place_.fail("another first move", "movej to the start", "It settles which way the arm is bent.");
+      place_.fail("another first move", "movej to the start", "It determines the arm's branch.");
     if (!program_.commands.empty() && command.kind == ScriptCommand::Kind::MoveJ)
       place_.fail("another movej", "movel, movep, servoj, sleep or stopj after the way to the start");
     seconds_ += command.seconds;

@@ -22,7 +22,7 @@ Verdict read_specimens_registration(const std::filesystem::path& file, Assessmen
   if (record.rmse_mm) {
     request.registration.rmse_mm = *record.rmse_mm;
   } else if (record.T_target_source) {
-    throw DataError(file, "rmse_mm", "no number", "how far the surfaces lie apart, as `incise register` writes it");
+    throw DataError(file, "rmse_mm", "no number", "the distance between the surfaces, as `incise register` writes it");
   }
   return verdict_of(record, file);
 }
@@ -49,8 +49,8 @@ std::string other_tool(const CutSettings& cut, const Calibration& calibration) {
       calibration.chosen->speed_mm_s * calibration.chosen->dullness * calibration.reference_step_s;
   if (std::abs(here_mm / calibrated_mm - 1.0) <= kSame) return {};
   return fmt::format(
-      "the case's cut.speed_mm_s and cut.dullness hold tissue over {:.2f} mm, those that the calibration chose over "
-      "{:.2f} mm: what the calibration says is not of this tool",
+      "the drag length of the case's cut.speed_mm_s and cut.dullness is {:.2f} mm, that of the calibration's choice "
+      "{:.2f} mm: the calibration does not apply to this tool",
       here_mm, calibrated_mm);
 }
 

@@ -23,10 +23,11 @@ using Json = nlohmann::ordered_json;
 /// @throws DataError for a registration that found no transform or does not say how well it fits.
 RegistrationQuality registration_of(const std::filesystem::path& file, Monitor& monitor) {
   const RegistrationRecord record = read_registration(file);
-  if (!record.T_target_source) throw DataError(file, "T_target_source", "null", "a registration that was found");
+  if (!record.T_target_source)
+    throw DataError(file, "T_target_source", "null", "the transform of a successful registration");
   if (!record.rmse_mm || !(*record.rmse_mm > 0.0)) {
     throw DataError(file, "rmse_mm", record.rmse_mm ? fmt::format("{}", *record.rmse_mm) : "no number",
-                    "how far the surfaces lie apart, above 0, as `incise register` writes it");
+                    "the distance between the surfaces, above 0, as `incise register` writes it");
   }
   report_reasons(verdict_of(record, file), monitor);
   return {*record.rmse_mm, record.scale};

@@ -14,7 +14,7 @@ PointCloud read_points(const std::filesystem::path& path, std::size_t fewest) {
   PointCloud cloud = cloud_of(read_cloud(path));
   if (cloud.points.size() < fewest) {
     throw DataError(path, "points", fmt::format("{}", cloud.points.size()),
-                    fmt::format("at least {} of a surface", fewest));
+                    fmt::format("at least {} points of a surface", fewest));
   }
   return cloud;
 }
@@ -26,14 +26,14 @@ void require_extent(const Points& points, const std::filesystem::path& path) {
     if (points[i].cwiseAbs().maxCoeff() > kFarthestMm) {
       throw DataError(path, fmt::format("point {}", i),
                       fmt::format("a coordinate of {:.3g}", points[i].cwiseAbs().maxCoeff()),
-                      fmt::format("millimetres, at most {:.0e}", kFarthestMm));
+                      fmt::format("at most {:.0e} mm", kFarthestMm));
     }
     box.extend(points[i]);
   }
   if (points.empty()) return;  // reported where points are counted
   if (box.sizes().maxCoeff() > kWidestMm) {
     throw DataError(path, "points", fmt::format("a cloud {:.4g} wide", box.sizes().maxCoeff()),
-                    fmt::format("millimetres of tissue, at most {:.0f}", kWidestMm), "Is the unit mm?");
+                    fmt::format("at most {:.0f} mm of tissue", kWidestMm), "Is the unit mm?");
   }
 }
 
@@ -48,7 +48,7 @@ void require_surface(const Points& points, const std::filesystem::path& path) {
   const Vec3 spread_mm =
       Eigen::SelfAdjointEigenSolver<Mat3>(scatter).eigenvalues().cwiseMax(0.0).cwiseSqrt();  // ascending
   const double tiny_mm = 1e-9 * std::max(1.0, mean.norm());
-  const char* expected = "points of a surface, that extend in two directions";
+  const char* expected = "points that extend in two directions, as those of a surface";
   if (spread_mm[2] <= tiny_mm)
     throw DataError(path, "points", fmt::format("all {} in one place", points.size()), expected);
   if (spread_mm[1] <= std::max(kLeastShare * spread_mm[2], tiny_mm))

@@ -173,7 +173,7 @@ void require_alike(const CompareRequest& request, const ComparedFiles& files) {
   const auto refuse = [&](const std::filesystem::path& path, const char* key, const std::string& found,
                           const std::string& expected, std::size_t like) {
     throw DataError(path, key, found, fmt::format("{} as in {}", expected, request.before[like].string()),
-                    "Only like is compared with like");
+                    "Compare only cuts with the same contour and target");
   };
   const auto check = [&](const std::vector<std::filesystem::path>& paths, const std::vector<EvaluationFile>& side) {
     const EvaluationFile& first = files.before.front();
@@ -193,36 +193,39 @@ void require_alike(const CompareRequest& request, const ComparedFiles& files) {
 }  // namespace
 
 void describe(Visitor& v, ComparedRow& r) {
-  v("name", r.name, "Of the file, without its ending.");
-  v("side", r.side, "before or after.");
-  v("outcome", r.outcome, "Of the cut.");
+  v("name", r.name, "Name of the file, without its ending.");
+  v("side", r.side, "Side of the comparison: before or after.");
+  v("outcome", r.outcome, "Outcome of the cut.");
   v({"target_mm", "Intended distance of the line that was measured.", "mm"}, r.target_mm);
-  v("hu_score", r.hu_score, "Tumour edge against incision.");
-  v("hu_score_ideal", r.hu_score_ideal, "What a perfect offset would score.");
-  v({"centroid_shift_mm", "Between the centres of the filled regions.", "mm"}, r.centroid_shift_mm);
-  v("n_points", r.n_points, "Of the contour.");
+  v("hu_score", r.hu_score, "Hu score of the incision against the tumour edge.");
+  v("hu_score_ideal", r.hu_score_ideal, "Hu score of a perfect offset.");
+  v({"centroid_shift_mm", "Distance between the centres of the filled regions.", "mm"}, r.centroid_shift_mm);
+  v("n_points", r.n_points, "Number of points of the contour.");
   const auto compared = [](std::string_view name, std::string_view meaning, std::string_view unit) {
     return Field{.name = name, .meaning = meaning, .unit = unit, .is_omitted = true};
   };
-  v(compared("mean_mm", "Of the measure that is compared.", "mm"), r.mean_mm);
-  v(compared("sd_mm", "Its sample standard deviation.", "mm"), r.sd_mm);
+  v(compared("mean_mm", "Mean of the measure that is compared.", "mm"), r.mean_mm);
+  v(compared("sd_mm", "Sample standard deviation of the measure that is compared.", "mm"), r.sd_mm);
   v(compared("block_points", "Points in a block of the bootstrap.", ""), r.block_points);
-  v(compared("n_effective", "Independent values that the points are worth.", ""), r.n_effective);
+  v(compared("n_effective", "Number of independent values that carry as much information as the points.", ""),
+    r.n_effective);
 }
 
 void describe(Visitor& v, CutComparison& c) {
   v("measure", c.measure, "Which errors are compared.");
   v("contour", c.contour, "Which line of the cuts was measured.");
-  v({"target_mm", "Its intended distance; null where specimens differ in it.", "mm"}, c.target_mm);
-  v.derived("mean_before_mm", c.points ? std::optional(c.points->before.mean) : std::nullopt, "Over all points.");
-  v.derived("mean_after_mm", c.points ? std::optional(c.points->after.mean) : std::nullopt, "Over all points.");
+  v({"target_mm", "Intended distance of the measured line; null if specimens differ in it.", "mm"}, c.target_mm);
+  v.derived("mean_before_mm", c.points ? std::optional(c.points->before.mean) : std::nullopt,
+            "Mean error before the change, over all points.");
+  v.derived("mean_after_mm", c.points ? std::optional(c.points->after.mean) : std::nullopt,
+            "Mean error after the change, over all points.");
   v.derived("verdict", c.points ? TestVerdict::Tested : TestVerdict::TooFew, "Whether there was anything to test.");
-  v("points", c.points, "By contour point, as the paper tests; absent where a side has no errors.");
-  v("specimens", c.specimens, "By specimen; absent where a side has no errors.");
+  v("points", c.points, "Tests by contour point, as in the paper; absent if a side has no errors.");
+  v("specimens", c.specimens, "Tests by specimen; absent if a side has no errors.");
   v("alpha", c.alpha, "Level of significance.");
-  v("power", c.power, "That fewest_specimens is for.");
+  v("power", c.power, "Power of the test for which fewest_specimens is stated.");
   v("rows", c.rows, "Every incision.");
-  v("left_out", c.left_out, "Those without errors.");
+  v("left_out", c.left_out, "Incisions without errors.");
 }
 
 CompareResult compare_cuts(const CompareRequest& request, const StepContext& context) {

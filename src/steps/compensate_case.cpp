@@ -51,7 +51,7 @@ void require_default_method(const CaseFile& file) {
   const CompensationMethod method = file.settings.compensation.method;
   if (method != CompensationMethod::Default)
     throw CaseError("command line", "--robust", fmt::format("method {}", to_string(method)),
-                    "--method default, from whose path it starts");
+                    "--method default: the robust path starts from its path");
   require_planned_path(file);
 }
 
@@ -78,8 +78,7 @@ nlohmann::ordered_json add_robust_path(const RobustRequest& chosen, CaseRun& run
     context.monitor.message(
         Severity::Warning,
         fmt::format("robust path: {}: a margin below {} mm somewhere has a probability of {:.3f}, or {:.3f} if tissue "
-                    "whose ring "
-                    "stayed open counts, and not at most {}",
+                    "whose ring stays open counts as too close; at most {} is allowed",
                     to_string(made.outcome), robust.settings.region.close_margin_mm, made.robust.p_close_margin,
                     made.robust.p_close_bound(), chosen.max_probability));
   }
@@ -92,7 +91,7 @@ CalibrationInput read_calibration_input(const CalibratedRequest& request) {
   Calibration found = read_calibration(request.calibration);
   CalibratedBelief belief = belief_of(found, request.calibration);
   if (request.stretch_force_n && !belief.knows_forces) {
-    throw CaseError("command line", "--stretch-force-n", "a pull, and a calibration that was made without",
+    throw CaseError("command line", "--stretch-force-n", "a pull, but a calibration without pulls",
                     "both with the pull of the suture, or both without");
   }
   return {request, std::move(found), std::move(belief)};
@@ -117,7 +116,7 @@ void require_rule_of(const CalibrationInput& calibration, const CaseFile& file) 
 void require_planned_path(const CaseFile& file) {
   if (file.inputs.tool_path.empty()) return;
   throw CaseError("case", "path", "a path of its own", "none",
-                  "Photographs of earlier cuts say how far a cut along the planned path errs")
+                  "Photographs of earlier cuts show how far a cut along the planned path errs")
       .in_file(file.file.string());
 }
 

@@ -30,7 +30,7 @@ std::string name_of_pass(std::size_t pass) {
 
 LinePlot errors_along(const std::filesystem::path& root) {
   LinePlot plot{.title = "Error along the path, pass by pass (simulated)",
-                .x_label = "place on the intended path, mm from its start",
+                .x_label = "distance along the intended path, mm",
                 .y_label = "signed error, mm (positive: farther from the tumour)",
                 .series = {}};
   const std::filesystem::path file = root / "correction" / "errors.csv";
@@ -54,10 +54,8 @@ LinePlot errors_along(const std::filesystem::path& root) {
 }
 
 LinePlot convergence(const Json& record) {
-  LinePlot plot{.title = "Mean error against the pass (simulated)",
-                .x_label = "pass (0: as planned)",
-                .y_label = "mm",
-                .series = {}};
+  LinePlot plot{
+      .title = "Mean error by pass (simulated)", .x_label = "pass (0: as planned)", .y_label = "mm", .series = {}};
   LineSeries mean{"mean |error|", {}, {}, true};
   LineSeries smooth{"mean |error| averaged along the path", {}, {}, true};
   const Json& history = record.at("history");
@@ -81,13 +79,13 @@ std::optional<CompensationFigure> robust_offsets(const std::filesystem::path& ro
   const std::filesystem::path file = root / "robust" / "robust.json";
   if (!std::filesystem::exists(file)) return std::nullopt;
   const Json json = read_json(file);
-  LinePlot plot{.title = "Where the tool is sent, against the path as planned (simulated)",
+  LinePlot plot{.title = "Offset of the waypoints from the path as planned (simulated)",
                 .x_label = "waypoint",
                 .y_label = "offset, mm (positive: away from the tumour)",
                 .series = {}};
   for (const auto& [key, name] : {std::pair{"corrected_offset_mm", "corrected"}, std::pair{"offset_mm", "robust"}}) {
     if (!json.is_object() || !json.contains(key) || !json.at(key).is_array())
-      throw DataError(file, key, "no list of numbers", "what `incise compensate --robust` writes");
+      throw DataError(file, key, "no list of numbers", "a list of numbers, as `incise compensate --robust` writes it");
     LineSeries series{name, {}, json.at(key).get<std::vector<double>>(), true};
     for (std::size_t i = 0; i < series.y.size(); ++i) series.x.push_back(static_cast<double>(i));
     plot.series.push_back(std::move(series));

@@ -127,7 +127,7 @@ void tell(const std::vector<PhotoMark>& marks, const char* mark, const char* pla
   if (marks.empty()) return;
   const bool is_one = marks.size() == 1;
   warnings.push_back(fmt::format(
-      "{} {}{} {} the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: {} {} part of no measure",
+      "{} {}{} {} the tumour's edge, the largest {:.2f} mm, at pixel {:.0f}, {:.0f}: {} {} not part of any measure",
       marks.size(), mark, is_one ? "" : "s", place, marks.front().longest_mm, marks.front().at_px.x(),
       marks.front().at_px.y(), question, is_one ? "It is" : "They are"));
 }
@@ -146,14 +146,13 @@ void require_one_source(const EvaluateRequest& request) {
   const auto refuse = [](const char* field, const char* found, const char* expected) {
     throw CaseError("command line", field, found, expected);
   };
-  if (!request.photo.empty() && has_files) refuse("PHOTO", "a photograph and contour files", "one of the two");
+  if (!request.photo.empty() && has_files) refuse("PHOTO", "a photograph and contour files", "only one of the two");
   if (!request.photo.empty()) {
     if (request.is_open)
-      refuse("--open", "an open cut in a photograph",
-             "a ring round the tumour; an unfinished one is measured as it is");
+      refuse("--open", "an open cut in a photograph", "a ring round the tumour; an unfinished ring is measured, too");
     if (request.approach) refuse("--approach", "a direction for a photograph", "none: a photograph is seen from above");
     if (!request.figure.empty() && request.figure.extension() != ".png")
-      refuse("--figure", "another kind of file", "a name that ends in .png: the photograph is drawn over");
+      refuse("--figure", "another kind of file", "a name that ends in .png: the figure is drawn over the photograph");
     return;
   }
   const bool has_line = !request.line.empty();
@@ -286,7 +285,8 @@ FoundScale find_scale(const ScaleRequest& request, const ColorPicture& picture, 
       found.summary["source"] = "rectangle";
     }
   } catch (const InvalidArgument& error) {
-    throw CaseError("command line", "scale", "points or lengths that give none", "ones that do", error.as_hint());
+    throw CaseError("command line", "scale", "points or lengths that give no scale",
+                    "points and lengths that give a scale", error.as_hint());
   }
   if (!request.ruler) return found;
   const Ruler ruler = find_ruler(picture, *request.ruler, request.ruler_mm, name);

@@ -27,7 +27,7 @@ namespace {
 /// Returns the numbers of a registration that the checks need. @throws DataError if one is missing.
 RegistrationSummary registration_summary(const RegistrationRecord& record, const std::filesystem::path& file) {
   const auto require = [&](bool is_there, const char* key) {
-    if (!is_there) throw DataError(file, key, "nothing", "what `incise register` writes");
+    if (!is_there) throw DataError(file, key, "nothing", "a value, as `incise register` writes it");
   };
   require(record.rmse_mm.has_value(), "rmse_mm");
   require(record.inlier_fraction.has_value(), "inlier_fraction");
@@ -44,8 +44,9 @@ ToolPath read_robot_path(const std::filesystem::path& file) {
 
 void require_of_case(const ToolPath& path, const ExportRequest& request, Monitor& monitor) {
   if (!request.case_file.empty() && path.specimen_id.empty()) {
-    monitor.message(Severity::Warning, fmt::format("{} names no specimen: it may be another one than that of {}",
-                                                   request.path.string(), request.case_file.string()));
+    monitor.message(Severity::Warning,
+                    fmt::format("{} names no specimen: it may be of a specimen other than that of {}",
+                                request.path.string(), request.case_file.string()));
   }
   if (!are_of_different_specimens(path.specimen_id, request.case_specimen_id)) return;
   throw DataError(request.path, "specimen_id", path.specimen_id,
@@ -101,7 +102,7 @@ void require_a_mark(const std::vector<std::string>& overrides) {
   for (const std::string& name : overrides) {
     if (name != "depth" && name != "speed_max" && name != "edge_distance") continue;
     throw CaseError("command line", "--override", fmt::format("'{}' for a mark", name),
-                    "another check: without this one it is no mark of the tumour's edge");
+                    "another check: without this one, the path is no mark of the tumour's edge");
   }
 }
 
@@ -228,7 +229,7 @@ StepResult export_program(const ExportRequest& given, const StepContext& context
   if (request.motion && request.form != ProgramForm::UrScript) {
     throw CaseError("command line", "--motion",
                     fmt::format("{} for --format {}", to_string(*request.motion), to_string(request.form)),
-                    "no --motion: only URScript has two kinds");
+                    "no --motion: only URScript has two kinds of motion");
   }
   ToolPath path = read_robot_path(request.path);
   const PathKind kind_in_file = path.kind;

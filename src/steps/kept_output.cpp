@@ -41,7 +41,7 @@ void with_parts_kept(const std::filesystem::path& output, const std::function<vo
     run();
   } catch (const Cancelled& error) {
     if (holds_files(output))
-      throw StagesKept(error.what(), fmt::format("what was finished is kept in {}", output.string()));
+      throw StagesKept(error.what(), fmt::format("finished results are kept in {}", output.string()));
     remove_if_new();
     throw;
   } catch (...) {

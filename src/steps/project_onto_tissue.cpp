@@ -41,8 +41,8 @@ RegistrationRecord trusted_registration(const std::filesystem::path& file, Monit
   const CheckSettings checks;  // limits that export will apply
   if (!(scale > checks.min_scale && scale < checks.max_scale)) {
     monitor.message(Severity::Warning,
-                    fmt::format("{}: the scale is {:.4f}; both sensors are metric, so that {} to {} is expected",
-                                file.string(), scale, checks.min_scale, checks.max_scale));
+                    fmt::format("{}: the scale is {:.4f}, expected {} to {}: both sensors are metric", file.string(),
+                                scale, checks.min_scale, checks.max_scale));
   }
   return record;
 }
@@ -135,7 +135,7 @@ ToolPath simulated_path(const std::filesystem::path& file, const std::filesystem
   require_tumor_size(path, file);
   if (kind == PathKind::Mark && path.tumor_edge.points.size() < 3) {
     throw DataError(file, "tumor_edge", fmt::format("{} points", path.tumor_edge.points.size()),
-                    "the edge that is to be marked");
+                    "the points of the edge to be marked");
   }
   return path;
 }
@@ -163,7 +163,7 @@ void warn_of_unsafe(const ToolPath& path, nlohmann::ordered_json& result, Monito
     if (gap.longest_mm > gap.limit_mm) {
       monitor.message(Severity::Warning,
                       fmt::format("the ring has a gap: {:.2f} mm from waypoint {} to the next, at most {:.2f} mm is "
-                                  "expected; export will refuse it (gap)",
+                                  "expected; export will refuse the path (gap)",
                                   gap.longest_mm, gap.after, gap.limit_mm));
     }
   }
@@ -174,8 +174,8 @@ void warn_of_unsafe(const ToolPath& path, nlohmann::ordered_json& result, Monito
   if (steepest_deg > limits.max_tilt_deg) {
     monitor.message(Severity::Warning,
                     fmt::format("the tool leans {:.0f} degrees from straight down at waypoint {}, at most {:.0f} are "
-                                "expected: are the axes, the transform and the camera's pose right? export will refuse "
-                                "it (tilt)",
+                                "expected: check the axes, the transform and the camera's pose. export will refuse the "
+                                "path (tilt)",
                                 steepest_deg, steepest - path.waypoints.begin(), limits.max_tilt_deg));
   }
 }
@@ -206,16 +206,17 @@ void hold_changes(Verdict& verdict, const RegistrationRecord& registration, cons
                   const ProjectSettings& settings) {
   constexpr double kSameSize = 1e-4;  // relative: 0.01 mm of a path of 100 mm
   if (settings.incise_depth_mm || settings.incise_speed_mm_s)
-    verdict.add("not_simulated", {}, "the path was projected with another depth or speed than its simulated cut had");
+    verdict.add("not_simulated", {},
+                "the path was projected with a depth or speed other than that of its simulated cut");
   if (settings.axis_mode == AxisMode::SurfaceNormal) {
     verdict.add("not_simulated", {},
                 "the tool was turned to the normals of the measured surface (--axis normal): the simulated cut held it "
-                "otherwise");
+                "differently");
   }
   if (request.takes_camera_size && std::abs(registration.scale - 1.0) > kSameSize) {
     verdict.add("not_simulated", {},
-                fmt::format("the path took the camera's size (--metric camera): its lengths are {:.4f} times those of "
-                            "its simulated cut",
+                fmt::format("the path was scaled to the camera's size (--metric camera): its lengths are {:.4f} times "
+                            "those of its simulated cut",
                             registration.scale));
   }
 }
@@ -231,7 +232,7 @@ Verdict verdict_along(const RegistrationRecord& registration, const ProjectReque
   if (!registration.target_sha256.empty() && registration.target_sha256 != sha256_of_input(request.surface)) {
     verdict.add(
         "registration", {},
-        fmt::format("{} was found on another cloud than {}", request.transform.string(), request.surface.string()));
+        fmt::format("{} was found on another cloud, not on {}", request.transform.string(), request.surface.string()));
   }
   return verdict;
 }

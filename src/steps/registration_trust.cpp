@@ -10,8 +10,8 @@ Verdict verdict_of(const RegistrationRecord& registration, const std::filesystem
   Verdict verdict;
   if (!registration.is_sealed) {
     verdict.add("typed_transform", {},
-                fmt::format("{} does not carry the digest of `incise register`: it is not known how its transform was "
-                            "found, nor how well it fits",
+                fmt::format("{} has no digest from `incise register`: how its transform was found, and how well it "
+                            "fits, is unknown",
                             file.string()));
   }
   for (const std::string& doubt : registration.doubts) verdict.add("registration", {}, doubt);
@@ -24,11 +24,11 @@ void require_clouds_unchanged(const RegistrationRecord& registration, const std:
     std::error_code absent;
     if (!std::filesystem::exists(cloud.path, absent)) {
       monitor.message(Severity::Warning,
-                      fmt::format("not checked: whether {}, from which {} was made, is unchanged; it is missing",
+                      fmt::format("not checked: whether {}, from which {} was made, has changed; the file is missing",
                                   cloud.path, file.string()));
     } else if (sha256_of_input(cloud.path) != cloud.sha256) {
-      throw DataError(file, cloud.key, fmt::format("that of another {}", cloud.path),
-                      "the digest of the cloud as it is now", "It was changed since: register again");
+      throw DataError(file, cloud.key, fmt::format("the digest of another {}", cloud.path),
+                      "the digest of the present cloud", "The cloud has changed: register again");
     }
   }
 }

@@ -57,7 +57,7 @@ std::string warning_of(const Replay& replay, const std::filesystem::path& progra
                           replay.outcome == ReplayOutcome::BlendsOverlap ||
                           replay.outcome == ReplayOutcome::JointLimits || replay.outcome == ReplayOutcome::TooLong;
   return fmt::format("{}{}: {}{}{}", program.string(), replay.line > 0 ? fmt::format(":{}", replay.line) : "",
-                     is_stopped ? "the arm cannot go on: " : "", to_string(replay.outcome),
+                     is_stopped ? "the arm cannot continue: " : "", to_string(replay.outcome),
                      replay.reason.empty() ? "" : fmt::format(": {}", replay.reason));
 }
 
@@ -72,7 +72,7 @@ StepResult replay_program(const ReplayRequest& request, const StepContext& conte
     require_robot_frame(*intended, request.path);
   } else if (!program.path) {
     context.monitor.message(Severity::Warning,
-                            "the program does not say which path it was made for: no deviations (give --path)");
+                            "the program does not state its path, so deviations are not computed (give --path)");
   }
   const PlayerSettings settings{.speed_slider = request.slider_percent / 100.0,
                                 .max_deviation_mm = request.max_deviation_mm};

@@ -304,7 +304,7 @@ std::string why_not_corrected(const CaseFile& file, const Json& study) {
     return stage.at("name") == "compensate" && stage.at("state") == "skipped";
   });
   return was_asked ? "There is no corrected cut: the cut as planned left no ring whose mid-line could be measured."
-                   : "There is no corrected cut: no correction was asked for.";
+                   : "There is no corrected cut: no correction was requested.";
 }
 
 void add_remarks(const CaseFile& file, const Json& study, ReportData& data) {
@@ -365,7 +365,7 @@ void add_findings(const CaseFile& file, const Json& study, ReportData& data) {
         "The correction is checked with the model that made it: the check cannot reveal an error of the model itself.");
   const auto left_out = program.value("checks_not_made", std::vector<std::string>{});
   if (!left_out.empty())
-    data.caveats.push_back(fmt::format("The checks of the robot program leave out: {}.", fmt::join(left_out, "; ")));
+    data.caveats.push_back(fmt::format("Not checked in the robot program: {}.", fmt::join(left_out, "; ")));
 }
 
 void add_cut(const fs::path& root, const CutFolder& cut, const CaseFile& file, const TetMesh& mesh, Monitor& monitor,
@@ -523,7 +523,7 @@ void add_kerf_picture(const fs::path& folder, const CutFolder& cut, const std::v
   if (!fs::exists(folder / "kerf.vtp")) return;
   TriMesh kerf = read_surface(folder / "kerf.vtp");
   ReportFrame frame;
-  frame.phase = "all that was removed, in the stretched tissue before the cut";
+  frame.phase = "all removed tissue, in the stretched tissue before the cut";
   frame.is_kerf.assign(kerf.triangles.size(), 1);
   frame.positions_mm = std::move(kerf.vertices);
   frame.skin = std::move(kerf.triangles);
@@ -609,9 +609,8 @@ void add_provenance(const fs::path& root, const CaseFile& file, ReportData& data
     const Manifest manifest = read_manifest(root);
     if (nlohmann::ordered_json::parse(manifest.settings_json) != nlohmann::ordered_json::parse(settings_json(file))) {
       data.notices.push_back({Severity::Warning,
-                              "The case file has changed since these results were made: the "
-                              "settings "
-                              "shown are the present ones, not theirs."});
+                              "The case file has changed since these results were made: the settings shown are the "
+                              "present ones, not those of the results."});
     }
     data.provenance = {{"incise", manifest.version, ""},
                        {"commit", manifest.commit, ""},

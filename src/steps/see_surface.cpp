@@ -70,8 +70,8 @@ void require_sampleable(const TriMesh& skin, double spacing_mm, const std::files
   }
   if (area_mm2 <= kMostPoints * spacing_mm * spacing_mm) return;
   throw DataError(input, "surface",
-                  fmt::format("{:.3g} mm2, which are {:.2g} points", area_mm2, area_mm2 / (spacing_mm * spacing_mm)),
-                  fmt::format("at most {:.0e} points", kMostPoints), "A larger --spacing-mm makes fewer");
+                  fmt::format("{:.3g} mm2, or {:.2g} points", area_mm2, area_mm2 / (spacing_mm * spacing_mm)),
+                  fmt::format("at most {:.0e} points", kMostPoints), "A larger --spacing-mm gives fewer points");
 }
 
 nlohmann::ordered_json seen(const TriMesh& skin, const SurfaceRequest& request, const Vec3& approach, Workers& workers,
@@ -118,7 +118,7 @@ nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::order
   constexpr double kLargestTiltDeg = 3.0;
   const Mat4 T = rigid_transform_in(read_json(request.camera), "T_robot_camera", request.camera);
   if (planes.empty()) {
-    throw DataError(request.input, "planes", "none", "the plane that --plane-z-mm gives the height of",
+    throw DataError(request.input, "planes", "none", "the plane whose height --plane-z-mm gives",
                     "Is it within the box, and is --planes at least 1?");
   }
   const nlohmann::ordered_json& plane = planes.front();
@@ -133,13 +133,13 @@ nlohmann::ordered_json take_plane_scale(PointCloud& cloud, const nlohmann::order
     throw DataError(request.input, "the largest plane",
                     fmt::format("{:.2f} mm from the camera and {:.2f} degrees from level", found_mm, tilt_deg),
                     fmt::format("{:.2f} mm and level, as T_robot_camera and --plane-z-mm say", true_mm),
-                    "Another plane may be larger, or the camera's pose is not this one.");
+                    "Another plane may be larger, or the camera's pose may be wrong.");
   }
   const CheckSettings checks;  // limits that export will apply
   if (!(scale > checks.min_scale && scale < checks.max_scale)) {
     monitor.message(Severity::Warning,
-                    fmt::format("the camera's scale is {:.4f}; the camera is metric, so that {} to {} is expected: is "
-                                "--plane-z-mm right? export will refuse what follows from it (registration_scale)",
+                    fmt::format("the camera's scale is {:.4f}, expected {} to {}: the camera is metric. Check "
+                                "--plane-z-mm; export will refuse a path based on this scale (registration_scale)",
                                 scale, checks.min_scale, checks.max_scale));
   }
   for (Vec3& p : cloud.points) p /= scale;

@@ -67,7 +67,7 @@ std::string tip_against_path(const Json& replay) {
                          : "The program does not run to completion. ";
   if (most_mm >= 0.0 && mean_mm >= 0.0)
     text += fmt::format("Tip against path, in the cut: at most {:.2f} mm, mean {:.2f} mm. ", most_mm, mean_mm);
-  return text + "As the player ran it, with incise's own kinematics and a model of the controller; not on an arm.";
+  return text + "The player ran the program with incise's own kinematics and a model of the controller, not on an arm.";
 }
 
 }  // namespace
@@ -80,12 +80,12 @@ void add_on_tissue(const std::filesystem::path& registration, const std::filesys
        {"inlier_fraction", "share of points that fit", ""},
        {"fit_fraction", "share of the points above the tissue that fit", ""},
        {"settled_max_mm", "settling found, greatest", "mm"},
-       {"rotation_deg", "turned by", "°"}}};
+       {"rotation_deg", "rotation", "°"}}};
   static constexpr std::array<Shown, 6> kReplay{
       {{"outcome", "outcome", ""},
        {"max_cut_deviation_mm", "deviation from the intended path in the cut, greatest", "mm"},
        {"mean_deviation_mm", "deviation from the intended path, mean", "mm"},
-       {"max_deviation_mm", "the same with the ways in and out, greatest", "mm"},
+       {"max_deviation_mm", "deviation with the ways in and out, greatest", "mm"},
        {"duration_s", "duration", "s"},
        {"model", "model", ""}}};
   // The program comes first: readers want to know where the tip goes.

@@ -39,7 +39,7 @@ int columns_of(const GridCloud& grid, const TrackRequest& request) {
   }
   if (grid.columns > 0 && given > 0 && given != grid.columns) {
     throw CaseError("command line", "--ply-width", fmt::format("{}", given),
-                    fmt::format("{}, as {} says itself", grid.columns, request.color.string()));
+                    fmt::format("{}, as in {}", grid.columns, request.color.string()));
   }
   return given > 0 ? given : grid.columns;
 }
@@ -51,7 +51,7 @@ int rows_of(const GridCloud& grid, int columns, const std::filesystem::path& fil
     throw DataError(file, "vertices", fmt::format("{} places in rows of {}", count, columns), "whole rows");
   if (grid.rows > 0 && count / width != static_cast<std::size_t>(grid.rows)) {
     throw DataError(file, "vertices", fmt::format("{} rows of {} places", count / width, columns),
-                    fmt::format("{} rows, as num_rows says", grid.rows));
+                    fmt::format("{} rows, as in num_rows", grid.rows));
   }
   return static_cast<int>(count / width);
 }
@@ -96,7 +96,7 @@ Scene scene_from_pictures(const TrackRequest& request) {
   if (scene.picture.width != camera.color.width || scene.picture.height != camera.color.height) {
     throw DataError(
         request.color, "", fmt::format("{} x {} pixels", scene.picture.width, scene.picture.height),
-        fmt::format("{} x {}, as {} says", camera.color.width, camera.color.height, request.intrinsics.string()));
+        fmt::format("{} x {}, as in {}", camera.color.width, camera.color.height, request.intrinsics.string()));
   }
   const DepthPicture depth = decode_depth(read_text(request.depth), request.depth);
   try {
@@ -195,13 +195,13 @@ ToolPath planned(const Tracked& tracked, const TrackRequest& request, const std:
 
 /// Says why the mark is not the requested one.
 std::string complaint_about(const MarkedLine& line, const ColorPicture& picture, const TrackRequest& request) {
-  if (request.is_open) return "the mark is a closed ring, an open line was requested";
+  if (request.is_open) return "the mark is a closed ring, but an open line was requested";
   if (const std::optional<Vec2> end = end_at_rim_px(line, picture.width, picture.height)) {
-    return fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: it is not known whether it is closed",
-                       end->x(), end->y());
+    return fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: whether it is closed is unknown", end->x(),
+                       end->y());
   }
-  return fmt::format("the mark is not closed: a gap of {:.2f} mm, at most {} mm is bridged", line.longest_unseen_mm,
-                     request.max_gap_mm);
+  return fmt::format("the mark is not closed: it has a gap of {:.2f} mm, but at most {} mm is bridged",
+                     line.longest_unseen_mm, request.max_gap_mm);
 }
 
 /// Warns of a ring that is taken as closed although its gap may be longer than allowed.

@@ -21,7 +21,8 @@ std::vector<RingObservation> rings_of(const Calibration& calibration, const std:
   std::vector<RingObservation> rings = ring_observations(calibration);
   if (rings.empty())
     throw DataError(file, "specimens", "no specimen with its ring and fitted errors",
-                    "a calibration of the method fit by this version", "Calibrate anew: finished simulations are kept");
+                    "a calibration by method fit, made by this version",
+                    "Calibrate again: finished simulations are kept");
   const std::size_t sectors = rings.front().photographed_mm.size();
   for (const RingObservation& one : rings) {
     const std::size_t count = one.photographed_mm.size();
@@ -29,7 +30,7 @@ std::vector<RingObservation> rings_of(const Calibration& calibration, const std:
       throw DataError(file, "fitted", fmt::format("a profile of {} numbers", count),
                       sectors < kLeastSectors || sectors > kMostSectors
                           ? fmt::format("{} to {}", kLeastSectors, kMostSectors)
-                          : fmt::format("{}, as the first has", sectors));
+                          : fmt::format("{}, as in the first profile", sectors));
     for (const auto* list : {&one.photographed_mm, &one.simulated_mm})
       for (const double error : *list)
         if (!(std::abs(error) <= kMostErrorMm))

@@ -76,7 +76,7 @@ void set(YAML::Node node, std::string_view key, const nlohmann::ordered_json& va
 }  // namespace
 
 StaleRevision::StaleRevision(const std::filesystem::path& file)
-    : CaseError(file.string(), "revision", "a file that was changed meanwhile", "the one that was shown",
+    : CaseError(file.string(), "revision", "a file that was changed in the meantime", "the file as it was shown",
                 "Look at the case again") {}
 
 std::string case_revision(const std::filesystem::path& file) {

@@ -78,7 +78,7 @@ YAML::Node parse(const std::string& text, const std::filesystem::path& file) {
     BoundedYaml bounds(file);
     parser.HandleNextDocument(bounds);
     if (parser.HandleNextDocument(bounds))
-      throw DataError(file, "", "several documents", "one: nothing after a second line '---'");
+      throw DataError(file, "", "several documents", "one document: nothing after a second line '---'");
     return YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw DataError(file, fmt::format("line {}", error.mark.line + 1), error.msg, "YAML or JSON");
@@ -112,13 +112,14 @@ void require_consistent(const CaseFile& file, const std::string& name) {
                     fmt::format("more than the electrode's radius of {} mm", radius_mm(c.tool)));
   }
   refuse("compensation", validate(c.compensation), "a usable correction");
-  refuse("thermal", validate(c.thermal), "usable constants of heat");
+  refuse("thermal", validate(c.thermal), "usable thermal constants");
   const double coarse_mm = c.meshing.coarse_mm.value_or(SizingSettings{}.coarse_mm);  // or less, in a small body
   if (c.meshing.fine_mm && *c.meshing.fine_mm > coarse_mm) {
     throw CaseError(name, "meshing.fine_mm", fmt::format("{} mm", *c.meshing.fine_mm), fmt::format("at most meshing.coarse_mm = {} mm", coarse_mm));
   }
   if (c.meshing.tets > 0 && c.meshing.tets < 100) {
-    throw CaseError(name, "meshing.tets", fmt::format("{}", c.meshing.tets), "0 (as the lengths give) or at least 100");
+    throw CaseError(name, "meshing.tets", fmt::format("{}", c.meshing.tets),
+                    "0 (the edge lengths decide) or at least 100");
   }
   if (const auto length = length_mm(c.tool); length && c.plan.depth_mm > *length) {
     throw CaseError(name, "plan.depth_mm", fmt::format("{} mm", c.plan.depth_mm), fmt::format("at most tool.length_mm = {} mm", *length));
@@ -173,7 +174,8 @@ void read_holders(CaseFile& file, const std::string& name) {
     if (support == nullptr || !support->holder) continue;
     const std::filesystem::path path = (file.folder / support->holder->name).lexically_normal();
     if (!std::filesystem::exists(path)) {
-      throw DataError(path, "", "no such file", fmt::format("what {} names as specimen.constraints[{}].surface", name, i));
+      throw DataError(path, "", "no such file",
+                      fmt::format("the file that {} names as specimen.constraints[{}].surface", name, i));
     }
     support->holder = std::make_shared<HolderSurface>(HolderSurface{support->holder->name, read_surface(path)});
     file.inputs.holders.push_back(path);
@@ -257,7 +259,8 @@ void require_input_files(const CaseFile& file) {
       {"plan.line", in.line_contour},      {"path", in.tool_path}};
   for (const auto& [field, path] : inputs) {
     if (path.empty() || std::filesystem::exists(path)) continue;
-    throw DataError(path, "", "no such file or folder", fmt::format("what {} names as {}", file.file.string(), field));
+    throw DataError(path, "", "no such file or folder",
+                    fmt::format("the input that {} names as {}", file.file.string(), field));
   }
 }
 

@@ -31,8 +31,8 @@ struct KeptVerdict {
   Verdict verdict;
 };
 void describe(Visitor& v, KeptVerdict& k) {
-  v("path", k.path, "The path that was cut, as its file has it.");
-  v("verdict", k.verdict, "On the cut.");
+  v("path", k.path, "The path that was cut, as text of its file.");
+  v("verdict", k.verdict, "Verdict on the cut.");
 }
 
 bool is_of_a_cut(const Verdict& verdict) {

@@ -54,9 +54,10 @@ struct PointErrors {
   std::vector<double> signed_error_mm, clock_h;
 };
 void describe(Visitor& v, PointErrors& p) {
-  v({"signed_error_mm", "Positive: farther from the tumour than intended.", "mm"}, p.signed_error_mm);
+  v({"signed_error_mm", "Signed error of each point; positive: farther from the tumour than intended.", "mm"},
+    p.signed_error_mm);
   std::optional<std::vector<double>> clock_h = p.clock_h.empty() ? std::nullopt : std::optional(p.clock_h);
-  if (v.sets() || clock_h) v({"clock_h", "Hour of a clock face over the tumour.", "h"}, clock_h);
+  if (v.sets() || clock_h) v({"clock_h", "Clock position of each point over the tumour.", "h"}, clock_h);
   if (!v.sets()) return;
   p.clock_h = clock_h.value_or(std::vector<double>{});
   if (p.signed_error_mm.size() < 3)
@@ -70,7 +71,7 @@ struct ZoneBorder {
   double at_or_below_mm = 0.0;
 };
 void describe(Visitor& v, ZoneBorder& z) {
-  v({"at_or_below_mm", "Upper border.", "mm"}, z.at_or_below_mm, kDistanceMm);
+  v({"at_or_below_mm", "Upper border of the zone.", "mm"}, z.at_or_below_mm, kDistanceMm);
 }
 
 /// Refuses a refused measurement: if a photograph's scale or perspective is wrong, its numbers must not be used.
@@ -87,9 +88,9 @@ struct PhotographedContours {
   Vec3 approach = Vec3::Zero();
 };
 void describe(Visitor& v, PhotographedContours& c) {
-  v("points", c.points, "The incision.");
-  v("tumor_edge", c.tumor_edge, "That it was to keep clear of.");
-  v("approach", c.approach, "In which the camera looked.");
+  v("points", c.points, "Contour of the incision.");
+  v("tumor_edge", c.tumor_edge, "Edge of the tumour.");
+  v("approach", c.approach, "Direction in which the camera looked.");
   if (v.sets() && !is_direction(std::span<const double, 3>(c.approach.data(), 3)))
     v.refuse({"approach"}, fmt::format("a vector of length {:.4g}", c.approach.norm()), kDirectionText);
 }
@@ -123,30 +124,30 @@ void describe(Visitor& v, EvaluationFile& f) {
   std::optional<bool> closed_loop = f.specimen.is_ring;
   v("closed_loop", closed_loop, "Whether the ring closed.");
   f.specimen.is_ring = closed_loop.value_or(false);
-  v("negative_margin", f.negative_margin, "Whether tissue is left all round.");
+  v("negative_margin", f.negative_margin, "Whether tissue remains all round the tumour edge.");
   v("contour", f.contour, "Which line of the cut was measured.");
   v({"target_mm", "Intended distance of that line from the tumour edge.", "mm"}, f.target_mm, kDistanceMm);
-  v("hu_score", f.hu_score, "Tumour edge against incision.", kNotNegative);
-  v("hu_score_ideal", f.hu_score_ideal, "What the perfect offset would score.", kNotNegative);
-  v({"centroid_shift_mm", "Between the centres of the filled regions.", "mm"}, f.centroid_shift_mm,
+  v("hu_score", f.hu_score, "Hu score of tumour edge and incision.", kNotNegative);
+  v("hu_score_ideal", f.hu_score_ideal, "Hu score that the ideal offset would have.", kNotNegative);
+  v({"centroid_shift_mm", "Distance between the centres of the two filled shapes.", "mm"}, f.centroid_shift_mm,
     {0.0, kLargestBodyMm});
   std::optional<ZoneBorder> positive, too_close;
   v.begin({"zones"});
-  v("positive_margin", positive, "No tissue left.");
-  v("too_close", too_close, "Too little tissue left.");
+  v("positive_margin", positive, "Zone in which no tissue is left.");
+  v("too_close", too_close, "Zone in which too little tissue is left.");
   v.end();
   if (positive) f.positive_at_mm = positive->at_or_below_mm;
   if (too_close) f.too_close_at_mm = too_close->at_or_below_mm;
   std::size_t count = f.specimen.signed_error_mm.size();
-  v("n_points", count, "At which errors were taken.", {0.0, kMostPoints});
-  v("verdict", f.verdict, "On the measurement.");
+  v("n_points", count, "Number of points at which the error was measured.", {0.0, kMostPoints});
+  v("verdict", f.verdict, "Verdict on the measurement.");
   if (count == 0 && f.outcome == Outcome::Success && v.sets())
-    v.refuse({"n_points"}, "0 beside the outcome success", "the points of the incision");
+    v.refuse({"n_points"}, "0 with the outcome success", "the points of the incision");
   if (f.outcome == Outcome::Success && closed_loop == false && v.sets())
-    v.refuse({"closed_loop"}, "false beside the outcome success", "true, or null for an open cut");
+    v.refuse({"closed_loop"}, "false with the outcome success", "true, or null for an open cut");
   if (count == 0) return;  // no incision was found: a result, without errors
   PointErrors points{f.specimen.signed_error_mm, f.clock_h};
-  v("points", points, "Point by point.");
+  v("points", points, "Errors, point by point.");
   require_size(v, "points/signed_error_mm", points.signed_error_mm, count);
   if (!points.clock_h.empty()) require_size(v, "points/clock_h", points.clock_h, count);
   f.specimen.signed_error_mm = std::move(points.signed_error_mm);

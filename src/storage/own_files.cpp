@@ -35,7 +35,7 @@ bool is_own_page(const fs::path& file) {
 
 void require_own_files(const fs::path& output) {
   if (fs::weakly_canonical(output) == output.root_path())
-    throw CaseError("command line", "-o", output.string(), "a folder of its own, not the root of all files");
+    throw CaseError("command line", "-o", output.string(), "a folder other than the root of the file system");
   require_no_link(output.has_filename() ? output : output.parent_path());  // "a/" hides that a is a link
   for (const char* name : {"study.json", "manifest.json"}) require_no_link(output / name);
   const fs::path record = output / "study.json", manifest = output / "manifest.json";

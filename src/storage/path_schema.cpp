@@ -27,8 +27,9 @@ Json waypoint() {
   Json fields;
   fields["position_mm"] = point("Where the tool enters the surface, mm");
   fields["axis"] = point("Unit vector along the tool, into the tissue");
-  fields["depth_mm"] = {{"type", "number"}, {"minimum", 0}, {"description", "Of the tip below the surface, mm"}};
-  fields["speed_mm_s"] = {{"type", "number"}, {"exclusiveMinimum", 0}, {"description", "Towards the next waypoint, mm/s"}};
+  fields["depth_mm"] = {{"type", "number"}, {"minimum", 0}, {"description", "Depth of the tip below the surface, mm"}};
+  fields["speed_mm_s"] = {
+      {"type", "number"}, {"exclusiveMinimum", 0}, {"description", "Speed towards the next waypoint, mm/s"}};
   return object_of(std::move(fields), {"position_mm", "axis", "depth_mm", "speed_mm_s"});
 }
 
@@ -39,10 +40,10 @@ Json choice(Names names, const char* meaning) {
 Json fields() {
   Json json;
   json["schema"] = {{"const", "incise.path/1"}};
-  json["frame"] = choice(names_of(PathFrame{}), "What positions and axes refer to");
-  json["kind"] = choice(names_of(PathKind{}), "Cut, or only mark");
+  json["frame"] = choice(names_of(PathFrame{}), "Frame of positions and axes");
+  json["kind"] = choice(names_of(PathKind{}), "Whether the path cuts or only marks");
   json["closed"] = {{"type", "boolean"}, {"description", "Whether the last waypoint leads back to the first; then there are at least 3"}};
-  json["waypoints"] = array_of(waypoint(), 2, "In the order of travel");
+  json["waypoints"] = array_of(waypoint(), 2, "Waypoints in the order of travel");
   json["tumor_edge"] = array_of(point("mm"), 0, "The tumour edge in the same frame");
   json["tumor_edge_closed"] = {{"type", "boolean"}, {"default", true}};
   Json row = array_of({{"type", "number"}}, 4, "");
@@ -58,8 +59,8 @@ Json fields() {
   json["verdict"] = {{"type", "object"},
                      {"required", {"status", "reasons", "digest_sha256"}},
                      {"description",
-                      "Verdict on the simulated cut along the path; the digest seals both. Written by incise: a path "
-                      "without it, or changed after it, counts as not simulated"}};
+                      "Verdict on the simulated cut along the path, with a digest of both. Written by incise: a path "
+                      "without a verdict, or changed after it, counts as not simulated"}};
   return json;
 }
 

@@ -72,8 +72,8 @@ Columns columns_of(const TextTable& table, const std::filesystem::path& path) {
   if (own == columns.places.end() || own->second.count("mean") == 0 || own->second.count("sd") == 0) {
     throw DataError(path, "line 1", fmt::format("the columns {}", fmt::join(table.header, ", ")),
                     "the columns mean_mm and sd_mm",
-                    "Optional: max_mm, min_mm, n, score_percent, and PART_mean_mm, PART_sd_mm, PART_n of what a row "
-                    "was pooled from");
+                    "Optional: max_mm, min_mm, n, score_percent, and PART_mean_mm, PART_sd_mm, PART_n of the parts "
+                    "from which a row was pooled");
   }
   for (const auto& [part, places] : columns.places) {
     if (places.count("mean") != places.count("sd")) {

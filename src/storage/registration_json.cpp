@@ -32,8 +32,9 @@ bool has_its_digest(const Json& document, const std::filesystem::path& file) {
   if (found == document.end()) return false;
   const std::string expected = digest_of(document);
   if (!found->is_string() || found->get<std::string>() != expected) {
-    throw DataError(file, std::string("/") + kDigestKey, found->dump(), expected + ", that of what is in this file",
-                    "It was changed after it was written: register again.");
+    throw DataError(file, std::string("/") + kDigestKey, found->dump(),
+                    expected + ", the digest of this file's contents",
+                    "The file was changed after it was written: register again.");
   }
   return true;
 }
@@ -76,18 +77,20 @@ void require_no_contradiction(const Json& document, const RegistrationRecord& re
   if (const auto scale = number_of(document, "scale", file, 0.0, std::numeric_limits<double>::infinity());
       scale && record.T_target_source && std::abs(*scale / record.scale - 1.0) > kSameScale) {
     throw DataError(file, "/scale", fmt::format("{:.6g}", *scale),
-                    fmt::format("{:.6g}, as T_target_source has it", record.scale));
+                    fmt::format("{:.6g}, the scale of T_target_source", record.scale));
   }
   const bool is_converged = record.is_converged.value_or(false);
   if (const auto found = document.find("outcome"); found != document.end() && record.is_converged) {
     const std::string converged(to_string(RegistrationOutcome::Converged));
     if (is_converged != (found->is_string() && found->get<std::string>() == converged))
-      throw DataError(file, "/outcome", found->dump(), fmt::format("what fits \"converged\": {}", is_converged));
+      throw DataError(file, "/outcome", found->dump(),
+                      fmt::format("an outcome that fits \"converged\": {}", is_converged));
   }
   if (!is_converged) return;
-  if (!record.T_target_source) throw DataError(file, "/T_target_source", "null", "the matrix of what has converged");
+  if (!record.T_target_source)
+    throw DataError(file, "/T_target_source", "null", "the transform that the registration converged to");
   if (truth_of(document, "scale_at_limit", file).value_or(false)) {
-    throw DataError(file, "/scale_at_limit", "true beside \"converged\": true", "a scale that is within its range",
+    throw DataError(file, "/scale_at_limit", "true with \"converged\": true", "a scale that is within its range",
                     "Register again.");
   }
 }

@@ -89,7 +89,7 @@ void require_inside(const LabelVolume& labels, const std::filesystem::path& file
     if ((at.array() >= -1.0).all() && (at.array() <= last.array()).all()) continue;
     throw DataError(file, "labels", fmt::format("tissue at {:.1f}, {:.1f}, {:.1f} mm", world.x(), world.y(), world.z()),
                     fmt::format("tissue inside the volume {}", scan_file.string()),
-                    "Labels and volume have to be of one scan, in one frame");
+                    "Labels and volume must belong to one scan, in one frame");
   }
 }
 
@@ -98,7 +98,7 @@ void take_verdict_from(const std::filesystem::path& file) {
   const Verdict older = read_path_verdict(file);
   if (older.status() != VerdictStatus::Refused) return write_tool_path(file, read_tool_path(file));
   write_tool_path(file, read_tool_path(file),
-                  refusals_of(older, "a later run has not come to the cut along the path again"));
+                  refusals_of(older, "a later run has not yet reached the cut along this path"));
 }
 
 }  // namespace
@@ -229,10 +229,9 @@ bool RunFolder::is_made_as_now(const std::filesystem::path& result) {
 
 void RunFolder::remove_what_is_out_of_date(Stage until, Monitor& monitor) {
   if (has_products() && !std::filesystem::exists(root_ / "cache")) {
-    monitor.message(Severity::Notice,
-                    fmt::format("{}: its results have no cache beside them, as those of version 0.1.0: "
-                                "all of them are computed again",
-                                root_.string()));
+    monitor.message(Severity::Notice, fmt::format("{}: its results have no cache beside them, as in version 0.1.0. "
+                                                  "All of them are computed again",
+                                                  root_.string()));
   }
   // A verdict depends on more than the path; a run that cuts writes it again at its end.
   const bool stays = until < Stage::Simulate && is_own_manifest(root_ / "manifest.json") && is_made_as_now(root_);
@@ -259,7 +258,7 @@ void RunFolder::remove_what_is_out_of_date(Stage until, Monitor& monitor) {
   if (!is_own_manifest(program / "manifest.json") || is_made_as_now(program)) return;
   remove_replaceable(program);
   monitor.message(Severity::Warning,
-                  fmt::format("{}: removed, it was made with other settings, inputs or version than the case's now",
+                  fmt::format("{}: removed, because the settings, inputs or version have changed since it was made",
                               program.string()));
 }
 
@@ -275,7 +274,8 @@ void RunFolder::remove_program_made_without(const Verdict& advice, Monitor& moni
   };
   if (std::all_of(advice.reasons().begin(), advice.reasons().end(), is_known)) return;
   remove_replaceable(program);
-  monitor.message(Severity::Warning, fmt::format("{}: removed, it was written before this advice", program.string()));
+  monitor.message(Severity::Warning,
+                  fmt::format("{}: removed, because it was written before this advice", program.string()));
 }
 
 void RunFolder::absent(const std::string& name) {

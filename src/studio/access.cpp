@@ -39,16 +39,16 @@ bool is_json(std::string_view content_type) {
 
 std::optional<Refusal> refusal_of(const RequestInfo& request, std::string_view token) {
   INCISE_REQUIRE(!token.empty(), "expected a token");
-  if (!is_this_machine(request.host)) return Refusal{403, "The Host of a request has to be localhost or 127.0.0.1."};
+  if (!is_this_machine(request.host)) return Refusal{403, "The Host of a request must be localhost or 127.0.0.1."};
   const bool is_api = request.target.starts_with("/api/");
   if (request.method != "GET" && !(is_api && request.method == "POST"))
-    return Refusal{405, "Only GET, and POST below /api/."};
+    return Refusal{405, "Only GET is allowed, and POST below /api/."};
   if (!is_api) return std::nullopt;
-  if (!is_own_page(request)) return Refusal{403, "A request has to come from the studio's own page."};
+  if (!is_own_page(request)) return Refusal{403, "A request must come from the studio's own page."};
   if (!is_same(request.token, token))
-    return Refusal{401, "The token is missing or that of another start: open the address that incise studio printed."};
+    return Refusal{401, "The token is missing or from another start: open the address that incise studio printed."};
   if (request.method == "POST" && !is_json(request.content_type))
-    return Refusal{415, "A POST has to be application/json."};
+    return Refusal{415, "A POST must be application/json."};
   return std::nullopt;
 }
 

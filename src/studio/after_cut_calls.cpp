@@ -84,7 +84,7 @@ fs::path folder_of_finding(const CaseFile& file, const std::string& prefix, cons
 // --- The photograph. ---
 
 steps::ScaleRequest scale_in(const Json& arguments) {
-  const Json given = argument<Json>(arguments, "scale", "how long a pixel is");
+  const Json given = argument<Json>(arguments, "scale", "the length of a pixel");
   if (!given.is_object()) throw CaseError("request", "scale", given.dump().substr(0, 80), "an object");
   static const std::set<std::string> known{"mm_per_pixel", "ruler",     "ruler_mm",
                                            "two_points",   "rectangle", "rectangle_mm"};
@@ -612,9 +612,11 @@ Json Calls::lay(const Json& arguments) {
   making.registration = registration;
   making.accepted = accepted_in(arguments);
   if (!making.accepted.empty() && text_argument(arguments, "registration_sha256") != registration_sha256)
-    throw CaseError("request", "registration_sha256", "another registration's", "that whose cautions are accepted");
+    throw CaseError("request", "registration_sha256", "the digest of another registration",
+                    "the digest of the registration whose cautions are accepted");
   if (text_argument(read_json(registration), "source") != (surface_folder(file) / "surface.ply").string())
-    throw CaseError(registration.string(), "source", "another surface", "this case's, registered here");
+    throw CaseError(registration.string(), "source", "another surface",
+                    "the surface of this case, registered in the studio");
   const steps::StepContext step{context(), workers_, monitor_};
   const fs::path output = output_beside(file_);
   write_simulated_surface(file, step);             // a surface other than the registered one is refused
@@ -623,7 +625,7 @@ Json Calls::lay(const Json& arguments) {
   const fs::path planned = output / "plan" / "path.json";
   if (!study.is_accepted && !file.inputs.tool_path.empty())
     throw CaseError(file_.string(), "path", "a given path whose correction is not accepted",
-                    "a path that was planned or corrected here", "incise project lays a given path");
+                    "a path that was planned or corrected here", "Use incise project for a given path");
   steps::ProjectRequest laying;
   laying.path = study.is_accepted ? output / "correction" / "path.json" : planned;
   laying.settings.kind = kind;

@@ -49,7 +49,7 @@ std::string folder_name(const Json& arguments) {
                         std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 32; });
   if (!is_plain)
     throw CaseError("request", "name", "'" + name.substr(0, 100) + "'",
-                    "a name for a folder: no '/', no '.' at its start");
+                    "a folder name without '/', and without '.' at its start");
   return name;
 }
 
@@ -57,7 +57,7 @@ std::string folder_name(const Json& arguments) {
 fs::path new_folder(const fs::path& parent, const std::string& name) {
   fs::path folder = parent / name;
   if (fs::exists(fs::symlink_status(folder)))
-    throw CaseError("request", "name", "'" + name + "', which is there already", "a new name");
+    throw CaseError("request", "name", "'" + name + "', which already exists", "a new name");
   return folder;
 }
 

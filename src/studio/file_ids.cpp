@@ -88,9 +88,9 @@ std::string FileIds::note(const fs::path& canonical) {
 
 std::string FileIds::id_of(const fs::path& path) {
   const std::optional<fs::path> canonical = canonical_of(path);
-  if (!canonical) throw DataError(path, "", "no such file or folder", "one that is there");
+  if (!canonical) throw DataError(path, "", "no such file or folder", "one that exists");
   if (!is_within(*canonical))
-    throw DataError(path, "", "a place outside the folders of the studio", "one within them",
+    throw DataError(path, "", "a place outside the folders of the studio", "a place in one of them",
                     "Start the studio with --root FOLDER to add a folder");
   return note(*canonical);
 }
@@ -99,9 +99,9 @@ fs::path FileIds::path_of(const std::string& id, const std::string& field) const
   const auto found = paths_.find(id);
   if (found == paths_.end()) throw CaseError("request", field, "an unknown file", "a file of the studio's list");
   const std::optional<fs::path> now = canonical_of(found->second);
-  if (!now) throw DataError(found->second, "", "no such file or folder any more", "one that is there");
+  if (!now) throw DataError(found->second, "", "no such file or folder any more", "one that exists");
   if (*now != found->second || !is_within(*now))
-    throw DataError(found->second, "", "a link that leads elsewhere now", "what was listed");
+    throw DataError(found->second, "", "a link that now leads elsewhere", "the file or folder that was listed");
   return *now;
 }
 

@@ -322,7 +322,7 @@ class Server {
       if (!failed) response.body() = std::move(file);
     }
     if (!response.body().is_open()) {
-      Response missing = plain(404, "There is no such array, or a newer one has taken its place.", is_kept);
+      Response missing = plain(404, "There is no such array, or a newer one has replaced it.", is_kept);
       co_await send(stream, std::move(missing));
       co_return;
     }
@@ -440,7 +440,7 @@ class Server {
 
   asio::awaitable<Response> call(std::string name, std::string body, bool is_kept) {
     Json arguments = parsed(body);
-    if (!arguments.is_object()) co_return plain(400, "The arguments of a call have to be a JSON object.", is_kept);
+    if (!arguments.is_object()) co_return plain(400, "The arguments of a call must be a JSON object.", is_kept);
     Json problem;
     try {
       if (name == "files") {

@@ -135,7 +135,7 @@ std::optional<double> share_of_length(const Constraint& constraint, std::span<co
 Json note_on_pull(const std::optional<double>& share) {
   constexpr double kMuch = 0.25;
   if (!share || *share <= kMuch) return nullptr;
-  return "Much for a body of this length. A smaller pull deforms the tissue less.";
+  return "This pull is large for a body of this length. A smaller pull deforms the tissue less.";
 }
 
 }  // namespace

@@ -155,8 +155,8 @@ asio::awaitable<void> WorkerProcess::read_lines(WorkerProcess* self, std::shared
   ::kill(child->pid, SIGKILL);  // it has closed its end, or sends invalid lines
   const std::string end = end_of(child->pid);
   self->child_.reset();
-  self->end_all(
-      fmt::format("The computation ended by {}. The case is as it was; the next call starts a new one.", end));
+  self->end_all(fmt::format(
+      "The computation ended with {}. The case is unchanged; the next call starts a new computation.", end));
 }
 
 void WorkerProcess::take_line(const std::string& line) {

@@ -73,7 +73,7 @@ VerificationCheck vibration_period(const CheckContext& context) {
                 kPeriodTolerance * period_s());
   const CheckCurve curve = swing(context, bar());
   const std::vector<double> times = crossings(curve);
-  if (times.size() < 2) throw NotSolved("the bar does not swing through its place of rest twice");
+  if (times.size() < 2) throw NotSolved("the bar does not swing twice through its position at rest");
   check.found = 2.0 * (times[1] - times[0]);
   check.note = fmt::format("{} steps per period; amplitude after one period {:.3f} of the first (implicit Euler damps)",
                            kStepsPerPeriod, curve.y.back() / kAmplitude);

@@ -62,7 +62,7 @@ std::vector<TipPose> cutting_part(const std::vector<TipPose>& course) {
   const double start = part.front().time_s;
   for (std::size_t i = 0; i < part.size(); ++i) {
     INCISE_REQUIRE(part[i].tip_mm.allFinite() && part[i].axis.allFinite() && std::isfinite(part[i].time_s),
-                   fmt::format("expected finite numbers, found others at pose {} of the cut", i));
+                   fmt::format("expected finite numbers, found a non-finite one at pose {} of the cut", i));
     part[i].time_s -= start;
     INCISE_REQUIRE(i == 0 || part[i].time_s >= part[i - 1].time_s, "expected poses in order of time");
   }

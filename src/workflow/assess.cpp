@@ -26,7 +26,7 @@ class RangeCheck {
   void compare(const char* name, double value, const std::vector<double>& calibrated, const UsualSpread& usual) {
     if (calibrated.empty()) {
       assessment_.notes.push_back(
-          fmt::format("{}: the calibration has it for no specimen, so its distance is not known", name));
+          fmt::format("{}: the calibration states it for no specimen, so its distance is not known", name));
       return;
     }
     assessment_.evidence.distances.push_back(distance_from(name, value, calibrated, usual));
@@ -50,7 +50,7 @@ void compare_stiffness(const AssessmentRequest& request, const ScenarioSet& scen
   if (!request.scenarios.stretch_force_n) {
     assessment.notes.push_back(
         fmt::format("the pull was not measured: the case's modulus of {:.3g} kPa is assumed, with an uncertainty of "
-                    "{:.2g} in its logarithm; whether it lies in the calibrated range is not known",
+                    "{:.2g} in its logarithm; whether the modulus lies in the calibrated range is not known",
                     scenarios.reference_kpa, scenarios.own_stiffness_sd));
     return;
   }
@@ -110,7 +110,7 @@ Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Stud
     evidence.intended = paths.intended;
     evidence.corrected = paths.corrected;
     evidence.gain = paths.gain;
-    if (!paths.gain) evidence.no_gain_because = "in the calibration's tissue the ring did not close along both paths";
+    if (!paths.gain) evidence.no_gain_because = "in no tissue of the calibration did the ring close along both paths";
     compare_stiffness(request, assessment.outlook->scenarios, *done.model, assessment);
   }
   evidence.is_stiffness_compared =
@@ -124,40 +124,44 @@ Assessment assess(const Case& settings, Inputs& inputs, Cache& cache, const Stud
 void describe(Visitor& v, Assessment& a) {
   EligibilityEvidence& evidence = a.evidence;
   v("advice", a.eligibility.advice, "Whether to cut along the corrected path.");
-  v("reasons", a.eligibility.reasons, "Each with its numbers.");
-  v("notes", a.notes, "What was not known, and what that costs.");
+  v("reasons", a.eligibility.reasons, "Reasons for the advice, with their numbers.");
+  v("notes", a.notes, "What was not known, and what follows from it.");
   std::optional<CutGain> gain = evidence.gain;
   if (gain && !(std::isfinite(gain->mean_mm) && std::isfinite(gain->sd_mm))) gain.reset();
   if (v.optional({"expected_gain_mm"}, gain.has_value())) {
-    v.begin({"expected_gain_mm", "Of the correction.", "mm"});
-    v("mean", gain->mean_mm, "Over scenarios and residuals.");
-    v("sd", gain->sd_mm, "Likewise.");
-    describe_interval(v, {"middle_80", "Middle 80 %, likewise.", "mm"}, gain->interval_80);
-    describe_interval(v, {"middle_95", "Middle 95 %, likewise.", "mm"}, gain->interval_95);
+    v.begin({"expected_gain_mm", "Expected gain of the correction.", "mm"});
+    v("mean", gain->mean_mm, "Mean over scenarios and residuals.");
+    v("sd", gain->sd_mm, "Standard deviation over scenarios and residuals.");
+    describe_interval(v, {"middle_80", "Middle 80 % of the gain, likewise.", "mm"}, gain->interval_80);
+    describe_interval(v, {"middle_95", "Middle 95 % of the gain, likewise.", "mm"}, gain->interval_95);
     v.end();
   }
-  v("p_worse", a.eligibility.p_worse, "That the corrected cut is the worse one.");
+  v("p_worse", a.eligibility.p_worse, "Probability that the corrected cut is the worse one.");
   v.derived("p_worse_if_alike", gain ? std::optional(gain->p_worse) : std::nullopt,
-            "The same, if the specimen is like those calibrated on.");
-  v("p_worse_if_unlike", a.eligibility.p_worse_if_unlike, "The same, if it is not.");
-  v("p_unlike", a.eligibility.p_unlike, "That it is not.");
+            "The same probability, if the specimen is like the calibrated ones.");
+  v("p_worse_if_unlike", a.eligibility.p_worse_if_unlike,
+    "The same probability, if the specimen is unlike the calibrated ones.");
+  v("p_unlike", a.eligibility.p_unlike, "Probability that the specimen is unlike the calibrated ones.");
   const bool is_foreseen = a.outlook.has_value();
   if (v.optional({"p_close_margin"}, is_foreseen)) {
-    v.begin({"p_close_margin", "That somewhere less tissue is left than the close margin."});
+    v.begin({"p_close_margin", "Probability that somewhere less tissue is left than the close margin."});
     for (auto& [name, risk] : {std::pair("intended", &evidence.intended), std::pair("corrected", &evidence.corrected)})
-      v.derived(name, risk->unmeasured_weight < 1.0 ? std::optional(risk->p_close_margin) : std::nullopt, "Path.");
+      v.derived(name, risk->unmeasured_weight < 1.0 ? std::optional(risk->p_close_margin) : std::nullopt,
+                "Along this path.");
     v.end();
   }
   if (v.optional({"intended"}, is_foreseen)) v("intended", evidence.intended, "Risk of the intended path.");
-  if (v.optional({"corrected"}, is_foreseen)) v("corrected", evidence.corrected, "Of the corrected one.");
+  if (v.optional({"corrected"}, is_foreseen)) v("corrected", evidence.corrected, "Risk of the corrected path.");
   if (v.optional({"scenarios"}, is_foreseen)) describe_scenarios(v, a.outlook->scenarios);
-  v.begin({"registration", "Of this specimen."});
+  v.begin({"registration", "Registration of this specimen."});
   v("converged", evidence.is_registered, "Whether a transform was found that nothing argues against.");
-  v({"rmse_mm", "Of the simulated surface against the measured one.", "mm"}, evidence.registration_rmse_mm);
-  v("scale", a.registration_scale, "That was found.");
+  v({"rmse_mm", "Root mean square distance of the simulated surface from the measured one.", "mm"},
+    evidence.registration_rmse_mm);
+  v("scale", a.registration_scale, "Scale that was found.");
   v.end();
-  v("distances", evidence.distances, "Of everything that is known of this specimen and the calibrated ones.");
-  v("rules", a.rules, "That it was judged by.");
+  v("distances", evidence.distances,
+    "Distances of this specimen from the calibrated ones, in everything that is known of both.");
+  v("rules", a.rules, "Rules by which the specimen was judged.");
 }
 
 }  // namespace incise

@@ -101,7 +101,7 @@ class CalibrationRunner {
     if (match.objection.empty()) return;
     throw DataError(subject.photograph_file, "tumor_edge", match.objection,
                     "the edge of this case's tumour, seen along its approach",
-                    "Are case and evaluation of the same specimen, and the picture neither mirrored nor turned?");
+                    "Are case and evaluation of the same specimen? Is the picture mirrored or turned?");
   }
 
   static double target_of(const Case& settings) { return settings.plan.lateral_margin_mm - radius_mm(settings.tool); }
@@ -351,7 +351,7 @@ class CalibrationRunner {
                                       [](const SimulatedProfile& profile) { return !profile.signed_error_mm.empty(); });
     monitor_.message(
         Severity::Notice,
-        fmt::format("{}: {} of {} closed simulated rings have no inner edge at the skin and are read by their mid-line",
+        fmt::format("{}: {} of {} closed simulated rings have no inner edge at the skin; their mid-line is used",
                     specimen.name, specimen.read_by_midline, closed));
   }
 
@@ -366,7 +366,7 @@ class CalibrationRunner {
     const bool is_any_at_skin =
         std::any_of(runs.begin(), runs.end(), [](const CalibrationRun& run) { return run.inner_edge.has_value(); });
     if (is_any_closed && !is_any_at_skin) return "no simulated cut that parts the skin all round";
-    return "simulated cuts that leave no closed ring at two drag lengths before the first that opens";
+    return "simulated cuts with a closed ring at fewer than two drag lengths before the first open one";
   }
 
   /// Leaves out specimens for which fewer than two drag lengths can be measured: they say nothing of the others. The

@@ -66,7 +66,7 @@ CalibrationBody::CalibrationBody(const CalibrationSubject& subject, Workers& wor
   simulated_force_n_ = pull_n(*study_.model, *study_.stretched);
   if (subject.photographed.stretch_force_n && !(simulated_force_n_ > 0.0)) {
     throw CaseError("case", "specimen.constraints", "none that pulls", "one of kind displaced",
-                    "A measured force is that of the stretch");
+                    "A measured force is the force of the stretch");
   }
 }
 
@@ -106,7 +106,7 @@ std::vector<double> CalibrationBody::moved_mm() const {
   std::optional<std::vector<double>> moved = error_profile(entry_contour(*given_path_), tumor_edge(), profile);
   if (!planned || !moved)
     throw CaseError("case", "path", "a path that does not go round the middle of the tumour's edge",
-                    "a ring round the tumour, as the planned one");
+                    "a ring round the tumour, like the planned path");
   for (std::size_t i = 0; i < moved->size(); ++i) (*moved)[i] -= (*planned)[i];
   return std::move(*moved);
 }

@@ -13,7 +13,7 @@ std::vector<Problem> validate(const CalibrationRequest& r) {
   for (const double drag : r.second_drag_lengths_mm) {
     const bool is_among =
         std::find(r.drag_lengths_mm.begin(), r.drag_lengths_mm.end(), drag) != r.drag_lengths_mm.end();
-    expect(is_among, "second_drag_lengths_mm", drag, "some of drag_lengths_mm");
+    expect(is_among, "second_drag_lengths_mm", drag, "one of drag_lengths_mm");
   }
   expect(r.second_stiffness != 1.0, "second_stiffness", r.second_stiffness, "a number other than 1");
   if (r.speeds_mm_s.empty() || r.dullnesses.empty())

@@ -28,7 +28,7 @@ MaterialField field_from(const TetMesh& mesh) {
   if (field.youngs_modulus_kpa.empty() && field.poissons_ratio.empty() && field.fibre_directions.empty()) {
     throw CaseError(kWhere, field_name, cell_arrays(mesh),
                     "at least one of the cell arrays youngs_modulus_kpa, poissons_ratio, fibre_direction",
-                    "A mesh that is made from a CT carries none");
+                    "A mesh that is made from a CT has none");
   }
   const std::vector<Problem> violations = validate(field, mesh.tets.size());
   if (violations.empty()) return field;
@@ -48,7 +48,7 @@ const std::vector<double>& labels_of(const TetMesh& mesh, const char* field) {
                     fmt::format("one number for each of {} tets", mesh.tets.size()));
   }
   throw CaseError(kWhere, field, cell_arrays(mesh), "the cell array 'label', one number for each tet",
-                  "A mesh that is made from a CT has the labels of ct.labels: give these, or specimen.mesh");
+                  "A mesh that is made from a CT has the labels of ct.labels: give ct.labels or specimen.mesh");
 }
 
 /// @param field  field of the case that names the label.
@@ -56,7 +56,7 @@ void require_label(const std::vector<double>& labels, int label, const std::stri
   if (std::find(labels.begin(), labels.end(), static_cast<double>(label)) != labels.end()) return;
   const auto [least, most] = std::minmax_element(labels.begin(), labels.end());
   throw CaseError(kWhere, field, fmt::format("{}, which no tet has", label),
-                  fmt::format("a label of the mesh; they lie between {:g} and {:g}", *least, *most));
+                  fmt::format("a label of the mesh; its labels lie between {:g} and {:g}", *least, *most));
 }
 
 /// Sets `values` in the tets of one label; an empty list starts as `common` everywhere.
@@ -74,7 +74,7 @@ std::vector<Vec3> directions_of(const FibreField& field, const TetMesh& mesh) {
   throw CaseError(kWhere, "specimen.material.fibre_field",
                   fmt::format("a potential that has not converged after {} iterations (residual {:.1e})",
                               found.iterations, found.residual),
-                  "one that converges", "Tetrahedra of a very bad shape may be why");
+                  "one that converges", "Badly shaped tetrahedra may be the cause");
 }
 
 }  // namespace
@@ -82,8 +82,8 @@ std::vector<Vec3> directions_of(const FibreField& field, const TetMesh& mesh) {
 std::vector<Problem> validate(const Material& material, const MaterialVariation& variation) {
   std::vector<Problem> violations = validate(material);
   if (variation.fibre_field && material.fibre_modulus_kpa == 0.0) {
-    violations.push_back({"fibre_modulus_kpa", "0 kPa, so that fibre_field changes nothing", "a number above 0",
-                          "Without fibres leave out fibre_field"});
+    violations.push_back({"fibre_modulus_kpa", "0 kPa, with which fibre_field changes nothing", "a number above 0",
+                          "Without fibres, leave out fibre_field"});
   }
   return violations;
 }
@@ -103,7 +103,7 @@ std::vector<Problem> validate(const CompensationChoice& choice) {
   }
   const bool is_profile = choice.method == CompensationMethod::Profile;
   if (is_profile && choice.photographed_mm.empty()) {
-    violations.push_back({"photographed_mm", "no numbers, so that method profile changes nothing",
+    violations.push_back({"photographed_mm", "no numbers, without which method profile changes nothing",
                           "the expected errors by direction, or a list of one number for all",
                           "A calibration's photographed_profile.mean_mm is such a list"});
   }
@@ -128,7 +128,7 @@ MaterialField material_field(const TetMesh& mesh, const Material& material, cons
   if (variation.from_mesh) field = field_from(mesh);
   if (variation.fibre_field && !field.fibre_directions.empty()) {
     throw CaseError(kWhere, "specimen.material.fibre_field",
-                    "directions of fibres from the mesh, too: from_mesh, and its cell array 'fibre_direction'",
+                    "fibre directions from the mesh, too: from_mesh, and the mesh's cell array 'fibre_direction'",
                     "one of the two");
   }
   const auto laid = mesh.cell_data.find(kLaidModulusArray);
@@ -137,8 +137,9 @@ MaterialField material_field(const TetMesh& mesh, const Material& material, cons
   if (laid != mesh.cell_data.end()) field.youngs_modulus_kpa = laid->second.values;
   const bool has_only_fibres = variation.from_mesh && field.youngs_modulus_kpa.empty() && field.poissons_ratio.empty();
   if (has_only_fibres && material.fibre_modulus_kpa == 0.0) {
-    throw CaseError(kWhere, "specimen.material.fibre_modulus_kpa", "0 kPa, so that the mesh's fibre_direction changes nothing",
-                    "a number above 0", "Without fibres leave out from_mesh");
+    throw CaseError(kWhere, "specimen.material.fibre_modulus_kpa",
+                    "0 kPa, with which the mesh's fibre_direction changes nothing", "a number above 0",
+                    "Without fibres, leave out from_mesh");
   }
   if (variation.fibre_field) field.fibre_directions = directions_of(*variation.fibre_field, mesh);
   if (variation.labels.empty()) return field;
@@ -163,7 +164,7 @@ std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& 
     const auto found = mesh.cell_data.find(kToughnessArray);
     if (found == mesh.cell_data.end()) {
       throw CaseError(kWhere, field, cell_arrays(mesh), "the cell array 'toughness', one number for each tet",
-                      "A mesh that is made from a CT carries none: give specimen.mesh");
+                      "A mesh that is made from a CT has none: give specimen.mesh");
     }
     toughness = found->second.values;
     if (found->second.components != 1 || toughness.size() != mesh.tets.size()) {
@@ -198,7 +199,7 @@ constexpr double kStretchMm = 20.0;  // paper II-A
 std::string default_hold_in_words() {
   return fmt::format(
       "The back end ({:g} mm) is clamped, the front end ({:g} mm) is pulled {:g} mm forwards, and a plane "
-      "under its lowest point supports it",
+      "under the body's lowest point supports it",
       kClampMm, kSutureMm, kStretchMm);
 }
 
@@ -207,8 +208,10 @@ std::vector<Constraint> default_constraints(const TetMesh& mesh) {
   const Box3 box = bounding_box(mesh.vertices);
   const double length_mm = box.sizes().y(), lowest = box.min().z();
   if (!(length_mm >= kShortestMm)) {
-    throw CaseError("case", "specimen.constraints", fmt::format("none, and a body {:.3g} mm long from front to back", length_mm),
-                    fmt::format("constraints of its own for a body shorter than {:g} mm: by default {:g} mm are clamped at the back and {:g} mm at the front are pulled by {:g} mm",
+    throw CaseError("case", "specimen.constraints",
+                    fmt::format("none, and a body {:.3g} mm long from front to back", length_mm),
+                    fmt::format("stated constraints for a body shorter than {:g} mm: by default {:g} mm are clamped at "
+                                "the back and {:g} mm at the front are pulled by {:g} mm",
                                 kShortestMm, kClampMm, kSutureMm, kStretchMm));
   }
   return {FixedConstraint{EndRegion{Vec3::UnitY(), kClampMm}, {true, true, true}},

@@ -49,7 +49,7 @@ std::optional<PathErrors> layer_path_errors(const Case& settings, const Simulate
   monitor.message(
       Severity::Notice,
       fmt::format("the ring is open near the skin; its path is corrected by the {} {} mm deep",
-                  settings.compensation.observable == ContourKind::InnerEdge ? "mid-line less half the kerf's width"
+                  settings.compensation.observable == ContourKind::InnerEdge ? "mid-line minus half the kerf's width"
                                                                              : "mid-line",
                   ring->depth_mm));
   return PathErrors{std::move(found.points.points), std::move(found.signed_error_mm), 0.0, false};
@@ -85,14 +85,14 @@ std::string loss_of_depth_or_closure(const Case& settings, const SimulatedCut& f
   if (open.size() > before.size())
     return fmt::format(
         "it leaves more of the planned depth open, where uncut tissue still holds the piece: {} of the measured layers "
-        "({} mm deep), the cut before {}",
+        "({} mm deep); the cut before left {}",
         open.size(), fmt::join(open, ", "), before.size());
   const auto least = [&settings](const SimulatedCut& cut) {
     const std::vector<DepthShare> shares = depth_shares(settings, cut.incision.kerf.depth);
     return shares.empty() ? 0.0 : std::ranges::min(shares, {}, &DepthShare::share).share;
   };
   if (least(corrected) >= std::min(*verdict_rule("depth").limit, least(first))) return {};
-  return fmt::format("it is {:.0f} % of the planned depth deep at its shallowest, the cut before {:.0f} %",
+  return fmt::format("at its shallowest it reaches {:.0f} % of the planned depth, the cut before {:.0f} %",
                      100.0 * least(corrected), 100.0 * least(first));
 }
 
@@ -229,11 +229,11 @@ std::string why_none_was_kept(const ConvergedCompensation& done) {
   if (nearest == nullptr) return {};
   const std::string worse =
       nearest->open_layers > first.open_layers
-          ? fmt::format("leaves more layers open ({} in place of {})", nearest->open_layers, first.open_layers)
+          ? fmt::format("leaves more layers open ({} instead of {})", nearest->open_layers, first.open_layers)
       : nearest->is_success < first.is_success ? std::string(kNoSuccess)
       : nearest->verdict > first.verdict
-          ? fmt::format("is {} in place of {}", to_string(nearest->verdict), to_string(first.verdict))
-          : fmt::format("falls {:.2f} mm short in depth in place of {:.2f} mm", nearest->shortfall_mm,
+          ? fmt::format("is {} instead of {}", to_string(nearest->verdict), to_string(first.verdict))
+          : fmt::format("falls {:.2f} mm short in depth instead of {:.2f} mm", nearest->shortfall_mm,
                         first.shortfall_mm);
   return fmt::format("; the pass that came nearest, with a mean |error| of {:.2f} mm, {}", *nearest->mean_abs_error_mm,
                      worse);
@@ -269,7 +269,7 @@ std::string objection_to(const Case& settings, const Correction& correction, con
   if (!after || (is_first_measured && !before)) return "its error could not be measured";
   const double radius = radius_mm(settings.tool);
   if (!(*after < radius))
-    return fmt::format("{} mean |error| is {:.2f} mm, and has to be below the electrode's radius, {:.2f} mm{}",
+    return fmt::format("{} mean |error| is {:.2f} mm, but must be below the electrode's radius, {:.2f} mm{}",
                        is_at_first ? "no pass is better than the cut before it, whose" : "its", *after, radius,
                        none_kept);
   if (!is_at_first && is_first_measured && !(*after < *before))

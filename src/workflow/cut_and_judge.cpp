@@ -178,14 +178,14 @@ SimulatedCut cut_and_judge(const Case& settings, const TissueModel& model, const
 void describe(Visitor& v, SimulatedCut& cut) {
   describe(v, cut.centerline);
   describe(v, cut.incision);
-  v("outcome", cut.outcome, "Of incision and margin together.");
+  v("outcome", cut.outcome, "Outcome of incision and margin together.");
   v.bulk("inner_edge_evaluation", cut.inner_edge, "Inner edge against margin less electrode radius, tool out.");
   v.derived("inner_edge", cut.incision.is_closed_loop ? std::optional(cut.inner_edge) : std::nullopt,
-            "The same of a ring; an open cut has none.");
-  v.bulk("layer_errors", cut.layers, "One for each layer.");
-  v.derived("layers", judged_layers(cut), "Layer by layer.");
+            "Errors of a ring's inner edge; an open cut has none.");
+  v.bulk("layer_errors", cut.layers, "Errors of the mid-line of each layer.");
+  v.derived("layers", judged_layers(cut), "Measures, layer by layer.");
   v.derived("deep_margin_unknown", why_no_deep_margin(cut), "Why there is no deep margin.");
-  v("tets", cut.tets, "Of the mesh before the cut.");
+  v("tets", cut.tets, "Number of tets of the mesh before the cut.");
   v({"thermal_half_width_mm", "How far beside the electrode heat damages tissue.", "mm"}, cut.thermal_half_width_mm);
   v({"thermal_margin_mm", "Tissue left unheated beside the tumour edge.", "mm"}, cut.thermal_margin_mm);
   v({"line_to_edge_mm", "Least distance of an open cut from the tumour's edge.", "mm"}, cut.line_to_edge_mm);

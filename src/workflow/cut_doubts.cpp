@@ -116,7 +116,7 @@ void add_made_skin(const Case& settings, const TissueModel& model, const MadeSki
   };
   const auto say_drawn = [](const Vec3&) {
     return std::string(
-        "lie on skin that strokes of the brush made (ct.edits): nothing but the strokes says where the "
+        "lie on skin that strokes of the brush made (ct.edits): only the strokes state where the "
         "specimen's skin is there. Compare it with the scan");
   };
   const Points entries = entry_contour(path).points;
@@ -173,15 +173,14 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const
   if (model.material.volume == VolumeTreatment::PerTet && ratio > *verdict_rule("locking").limit + kRatioRounding) {
     verdict.add("locking", ratio,
                 fmt::format("a Poisson's ratio of {:.6g} with specimen.material.volume: per_tet makes tetrahedra "
-                            "lock: the cut's errors "
-                            "are too small. volume: averaged avoids this",
+                            "lock: the cut's errors are too small. volume: averaged avoids this",
                             ratio));
   }
   if (settings.cut.rule != CutSettings{}.rule) {
     verdict.add(
         "cut_rule", std::nullopt,
-        fmt::format("the rule of the cut is {} (cut.rule), whose cuts nothing was compared with. Where the tool "
-                    "will cut is better known with {}",
+        fmt::format("the cut was simulated by rule {} (cut.rule), whose cuts were compared with nothing. Where the "
+                    "tool will cut is better known with rule {}",
                     to_string(settings.cut.rule), to_string(CutSettings{}.rule)));
   }
   const double coarsest_mm = *verdict_rule("mesh_resolution").limit;
@@ -189,9 +188,8 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const
   if (edge_mm && *edge_mm > coarsest_mm) {
     verdict.add("mesh_resolution", *edge_mm,
                 fmt::format("the mesh is coarse for a tool of {:.2g} mm: its edges along the path measure {:.2f} mm "
-                            "on average, and above {} mm "
-                            "the mesh affects the cut's error as much as the tissue does. Refine it: meshing.tets or "
-                            "meshing.fine_mm",
+                            "on average, and above {} mm the mesh affects the cut's error as much as the tissue does. "
+                            "Refine it: meshing.tets or meshing.fine_mm",
                             2.0 * radius_mm(settings.tool), *edge_mm, coarsest_mm));
   }
   const std::optional<PlatformClearance> platform = platform_clearance(model, path);

@@ -55,8 +55,7 @@ void judge_depth(const Case& settings, const SimulatedCut& cut, Verdict& verdict
   verdict.add(
       "depth", least.share,
       fmt::format("the simulated kerf is {:.2g} mm deep at its shallowest, {:.0f} % of the planned {:.2g} mm, and too "
-                  "shallow on "
-                  "{} of the path",
+                  "shallow on {} of the path",
                   depth.profile.depth_mm[least.at], 100.0 * least.share, least.planned_mm,
                   share_in_words(static_cast<double>(shallow) / static_cast<double>(shares.size()))),
       VerdictPlace{depth.profile.arclength_mm[least.at], depth.profile.course.points[least.at],
@@ -123,7 +122,7 @@ Tissue least_tissue(const Case& settings, const SimulatedCut& cut, const Expecte
 std::string margin_that_would_do(const Case& settings, double left_mm) {
   if (settings.plan.kind == PlanKind::Line) return {};
   const double needed_mm = settings.plan.lateral_margin_mm + settings.close_margin_mm - left_mm;
-  return fmt::format(". Planned with a lateral margin of {:.1f} mm, a cut with the same error would leave that",
+  return fmt::format(". With a lateral margin of {:.1f} mm, a cut with the same error would leave enough",
                      std::floor(10.0 * needed_mm + 1.0) / 10.0);
 }
 
@@ -183,8 +182,8 @@ void judge_tumor(const Case& settings, const SimulatedCut& cut, Verdict& verdict
   const std::string what = margin->nearest_mm < 0.0 ? fmt::format("enters the tumour by {:.2f} mm", -margin->nearest_mm)
                                                     : fmt::format("comes within {:.2f} mm of the tumour", margin->nearest_mm);
   verdict.add("tumor_distance", margin->nearest_mm,
-              fmt::format("the simulated kerf {}: it has to keep more than {} mm away", what, settings.close_margin_mm), {},
-              settings.close_margin_mm);
+              fmt::format("the simulated kerf {}: it must stay more than {} mm away", what, settings.close_margin_mm),
+              {}, settings.close_margin_mm);
 }
 
 /// Heat spreads from the electrode, which runs in the kerf's middle.
@@ -326,15 +325,15 @@ Verdict verdict_of_contour(const Contour& edge, const TriMesh& surface, const Ve
   const VerdictPlace place{{}, fit.at_mm, {}};
   if (turned_fit.apart_mm <= limit_mm) {
     verdict.add("contour_flipped", fit.apart_mm,
-                fmt::format("the tumour's edge lies {:.1f} mm off the tumour's surface, and {:.1f} mm with x and y turned: it looks as if it "
-                            "was drawn in RAS and saved without saying so (coordinates of files are LPS)",
+                fmt::format("the tumour's edge lies {:.1f} mm off the tumour's surface, and {:.1f} mm with x and y "
+                            "reversed: it seems to have been drawn in RAS and saved without that information "
+                            "(coordinates of files are LPS)",
                             fit.apart_mm, turned_fit.apart_mm),
                 place, limit_mm);
   } else {
     verdict.add("contour_surface", fit.apart_mm,
                 fmt::format("the tumour's edge and its surface lie up to {:.1f} mm apart, seen along the approach: "
-                            "one of the two has "
-                            "another place, frame or unit",
+                            "one of the two has the wrong place, frame or unit",
                             fit.apart_mm),
                 place);
   }
@@ -362,8 +361,7 @@ Verdict verdict_of_run(const Case& settings, const Verdict& about_inputs, const 
   if (settings.T_robot_sim && !settings.is_virtual) {
     verdict.add("typed_transform", {},
                 "robot.T_robot_sim was typed into the case: no registration confirms that the specimen lies there "
-                "(register, project and export "
-                "find and check it)");
+                "(register, project and export find and check it)");
   }
   return verdict;
 }

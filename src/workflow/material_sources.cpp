@@ -103,9 +103,8 @@ void lay_tumor(const TriMesh& tumor, double value_kpa, const Points& centroids, 
   if (inside > 0) return;
   throw CaseError("case", "specimen.material.tumor_modulus_kpa", "a tumor.surface that holds no tetrahedron",
                   "a surface within the tissue at rest",
-                  "It is in the frame of the scan (LPS, mm), closed and oriented outwards. Of a tumour that is smaller "
-                  "than the tetrahedra none may lie in it: "
-                  "meshing.survey_mm and meshing.coarse_mm");
+                  "The surface must be in the frame of the scan (LPS, mm), closed and oriented outwards. A tumour "
+                  "smaller than the tetrahedra may hold none: reduce meshing.survey_mm and meshing.coarse_mm");
 }
 
 }  // namespace
@@ -119,7 +118,7 @@ MaterialSources read_material_sources(const Case& settings, Inputs& inputs, Moni
   const char* field = "specimen.material.tumor_modulus_kpa";
   if (settings.tumor_configuration != TumorConfiguration::Rest)
     throw CaseError("case", field, "a tumour that was drawn on the stretched tissue", "tumor.configuration: rest",
-                    "The stretch depends on how stiff the tumour is: it has to be known before");
+                    "The stretch depends on the tumour's stiffness, so the surface at rest must be known first");
   sources.tumor = inputs.read_tumor_surface();
   if (!sources.tumor) throw CaseError("case", field, "no tumor.surface", "the tumour's surface, at rest");
   return sources;
@@ -157,8 +156,8 @@ Verdict verdict_of_map(const MapCoverage& coverage) {
   if (coverage.share >= kLeastShare) return verdict;
   verdict.add(
       "scan", coverage.share,
-      fmt::format("the elasticity map is known in {:.0f} % of the specimen only: is it in the frame of the scan "
-                  "(LPS, mm)? Elsewhere youngs_modulus_kpa holds",
+      fmt::format("the elasticity map is known in only {:.0f} % of the specimen: is it in the frame of the scan "
+                  "(LPS, mm)? Elsewhere youngs_modulus_kpa applies",
                   100.0 * coverage.share),
       {}, kLeastShare);
   return verdict;

@@ -75,7 +75,7 @@ class TissueCuts {
 
   void find_scenarios() {
     if (request_.stretch_force_n && !belief_.knows_forces) {
-      throw CaseError("command line", "--stretch-force-n", "a pull, and a calibration that was made without",
+      throw CaseError("command line", "--stretch-force-n", "a pull, but a calibration made without one",
                       "both with the pull of the suture, or both without");
     }
     const double reference = body_.reference_stiffness();
@@ -95,12 +95,12 @@ class TissueCuts {
     std::vector<double> simulated_mm = planned_.front().profile_mm;
     if (simulated_mm.empty())
       monitor_.message(Severity::Warning,
-                       "forecast: the calibrated tissue left no closed ring as planned, so that this ring is taken for "
-                       "an average one");
+                       "forecast: in the calibrated tissue, the planned cut left no closed ring. This ring is treated "
+                       "as an average one");
     if (belief_.rings.size() < belief_.specimens)
       monitor_.message(Severity::Warning,
                        fmt::format("forecast: {} of the calibration's {} specimens have a ring and a "
-                                   "photograph; the others are left out of it",
+                                   "photograph; the forecast leaves the others out",
                                    belief_.rings.size(), belief_.specimens));
     for (double& error : simulated_mm) error += scenarios_.tissues.front().bias_mm;
     const RingForecaster forecaster(belief_.rings, true);
@@ -249,18 +249,18 @@ class TissueCuts {
 
 void warn_unless_converged(const RingForecaster& forecaster, Monitor& monitor) {
   if (!forecaster.is_converged())
-    monitor.message(Severity::Warning, "forecast: the search for its spreads was ended before it came to rest");
+    monitor.message(Severity::Warning, "forecast: the search for its spreads ended before it converged");
 }
 
 void require_usable_share(const std::filesystem::path& file, double simulated_share, Monitor& monitor) {
   if (!contains(kUsableShare, simulated_share))
     throw DataError(file, "fitted",
-                    fmt::format("photographs that differ by {:.2f} of what simulations do", simulated_share),
+                    fmt::format("photographs that differ {:.2f} times as much as the simulations", simulated_share),
                     fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
-                    "The simulation says nothing of these specimens");
+                    "The simulation predicts nothing about these specimens");
   if (!contains(kLikelyShare, simulated_share))
     monitor.message(Severity::Warning,
-                    fmt::format("forecast: photographs differ by {:.2f} of what the simulations do: the simulation "
+                    fmt::format("forecast: photographs differ {:.2f} times as much as the simulations: the simulation "
                                 "misleads",
                                 simulated_share));
 }
@@ -278,37 +278,42 @@ CorrectionOutlook foresee_correction(const Case& settings, Inputs& inputs, Cache
 }
 
 void describe_scenarios(Visitor& v, ScenarioSet& s) {
-  v.begin({"scenarios", "The tissue that the calibration expects, and what its photographs say beyond it."});
-  v({"reference_kpa", "Young's modulus that stiffness factors are over.", "kPa"}, s.reference_kpa);
+  v.begin(
+      {"scenarios", "The tissue that the calibration expects, and the differences from it that its photographs show."});
+  v({"reference_kpa", "Young's modulus that corresponds to stiffness factor 1.", "kPa"}, s.reference_kpa);
   v({"simulated_force_n", "Pull of the specimen at the case's modulus.", "N"}, s.simulated_force_n);
   v("own_stiffness_sd", s.own_stiffness_sd,
-    "Of the logarithm of the specimen's own stiffness; 0: its pull is known, or no pull was ever measured.");
-  v("photographs", s.photographs, "Of the calibration's specimens.");
-  v.derived("simulated_share", s.prediction.simulated_share, "How much of simulated differences is expected.");
+    "Standard deviation of the logarithm of the specimen's stiffness; 0: its pull is known, or none was ever "
+    "measured.");
+  v("photographs", s.photographs, "Number of photographs of the calibration's specimens.");
+  v.derived("simulated_share", s.prediction.simulated_share, "Expected real difference per simulated difference.");
   std::vector<double> sd_mm;
   for (const double variance : s.prediction.covariance_mm2.diagonal()) sd_mm.push_back(std::sqrt(variance));
-  v.derived("residual_mm", s.prediction.residual_mm, "Expected beyond the first tissue, by sector from the start on.");
-  v.derived("sd_mm", sd_mm, "Of one photograph about that: scale of Student's distribution.");
-  v.derived("degrees", s.prediction.degrees, "Of its freedom.");
+  v.derived("residual_mm", s.prediction.residual_mm,
+            "Expected photographed error minus that of the first tissue, by sector from the start direction on.");
+  v.derived("sd_mm", sd_mm, "Scale of Student's distribution of one photograph about residual_mm.");
+  v.derived("degrees", s.prediction.degrees, "Degrees of freedom of that distribution.");
   v.derived("unlike", std::vector<std::string>(s.prediction.unlike.begin(), s.prediction.unlike.end()),
-            "Covariates outside the photographs' 10th to 90th percentile, the outline left out.");
-  v("tissues", s.tissues, "The first: the middle.");
-  v("settings", s.settings, "What each of them was simulated with.");
+            "Covariates, except the outline, outside the photographs' 10th to 90th percentile.");
+  v("tissues", s.tissues, "Tissues that were simulated; the first is the expected one.");
+  v("settings", s.settings, "Settings with which each tissue was simulated.");
   v.end();
 }
 
 void describe(Visitor& v, RobustCorrection& r) {
   RobustCompensation& chosen = r.compensation;
-  v("outcome", chosen.outcome, "Whether the path keeps the probability.");
-  v("max_probability", r.settings.max_probability, "Allowed of less tissue than the close margin.");
-  v({"close_margin_mm", "Clinical cut-off.", "mm"}, r.settings.region.close_margin_mm);
-  v.derived("contour", ContourKind::InnerEdge, "What is measured.");
+  v("outcome", chosen.outcome, "Whether the path keeps within max_probability.");
+  v("max_probability", r.settings.max_probability,
+    "Greatest allowed probability of less tissue than the close margin.");
+  v({"close_margin_mm", "Clinical cut-off of the tissue left beside the tumour.", "mm"},
+    r.settings.region.close_margin_mm);
+  v.derived("contour", ContourKind::InnerEdge, "Contour that is measured.");
   v("intended", chosen.intended, "Risk of the intended path.");
-  v("corrected", chosen.corrected, "Of the corrected one.");
-  v("robust", chosen.robust, "Of the chosen one.");
-  v("simulations", chosen.simulations, "Scenarios times paths.");
+  v("corrected", chosen.corrected, "Risk of the corrected path.");
+  v("robust", chosen.robust, "Risk of the robust path.");
+  v("simulations", chosen.simulations, "Number of simulated cuts: scenarios times paths.");
   describe_scenarios(v, r.scenarios);
-  v.bulk("corrected_offset_mm", r.corrected_offset_mm, "Per waypoint: of the corrected path.");
+  v.bulk("corrected_offset_mm", r.corrected_offset_mm, "Offset of each waypoint of the corrected path.");
 }
 
 }  // namespace incise

@@ -32,8 +32,8 @@ struct Timed {
 };
 template <class T>
 void describe(Visitor& v, Timed<T>& t) {
-  v("value", t.value, "The result.");
-  v("wall_s", t.wall_s, "Time that it took.");
+  v("value", t.value, "The result that was computed.");
+  v("wall_s", t.wall_s, "Time that the computation took.");
 }
 
 // An undamaged entry may still come from someone else: nothing in it may point outside the mesh.
@@ -129,7 +129,7 @@ class Runner {
                                                 &Runner::verify};
     read_inputs();
     for (std::size_t i = 0; i <= static_cast<std::size_t>(options_.until); ++i) {
-      throw_if_cancelled(monitor_, "the study");
+      throw_if_cancelled(monitor_, "the run");
       if (static_cast<Stage>(i) == Stage::Simulate && goes_without_simulation()) {
         study_.stages.push_back({Stage::Simulate, StageState::Skipped, 0.0});
         choose_path();
@@ -168,7 +168,7 @@ class Runner {
                       is_ring ? "a closed path for plan.kind: ring" : "an open path for plan.kind: line");
     }
     if (given_path_ && expects_by_direction(settings_.compensation)) {
-      throw CaseError("case", "path", "a path of its own, and errors that are expected along the planned one",
+      throw CaseError("case", "path", "a given path, and errors that are expected along the planned one",
                       "one of the two", "Leave out path, or photographed_mm, residual_mm and simulated_share");
     }
     if (!tumor_edge_ || !tumor_surface_) return;
@@ -181,12 +181,12 @@ class Runner {
   /// A surface in metres would lie somewhere within the edge and never come near the kerf.
   static void require_tumor_size(const TriMesh& surface) {
     const auto problem = size_problem(Contour{surface.vertices, true}, "a tumour", kLargestTumorMm);
-    if (problem) throw CaseError("case", "tumor.surface", problem->found, problem->expected, "Lengths are mm");
+    if (problem) throw CaseError("case", "tumor.surface", problem->found, problem->expected, "Lengths are in mm");
   }
 
   [[noreturn]] static void refuse_to_resume(const std::string& found) {
     throw CaseError("command line", "--resume", found, "an interrupted cut of this case, with its settings and inputs",
-                    "Without --resume what is missing is computed from the beginning");
+                    "Without --resume, missing results are computed from the beginning");
   }
 
   /// Adds how the specimen is held and what it consists of.
@@ -208,7 +208,8 @@ class Runner {
     note.key = key.digest();
     bool is_made = false;
     const auto make_in_time = [&] {
-      if (must_resume_ && !may_resume_in_it) refuse_to_resume(fmt::format("no finished {} of it", to_string(stage)));
+      if (must_resume_ && !may_resume_in_it)
+        refuse_to_resume(fmt::format("no finished {} of this case", to_string(stage)));
       is_made = true;
       Timed<T> made{make(), 0.0};
       made.wall_s = seconds_since(start);
@@ -307,8 +308,8 @@ class Runner {
                               viscous_terms(settings_.material));
     const std::optional<std::uint64_t> held = held_memory_bytes();
     monitor_.message(Severity::Notice,
-                     fmt::format("tissue: {} tets, {} vertices; to stretch and cut it takes about {:.0f} MB{}", mesh.tets.size(), mesh.vertices.size(),
-                                 megabytes(needed),
+                     fmt::format("tissue: {} tets, {} vertices; to stretch and cut takes about {:.0f} MB{}",
+                                 mesh.tets.size(), mesh.vertices.size(), megabytes(needed),
                                  held ? fmt::format(" beyond the {:.0f} MB in use", megabytes(*held)) : ""));
     const std::optional<std::uint64_t> available = available_memory_bytes();
     if (!available || needed <= *available) return;
@@ -323,7 +324,8 @@ class Runner {
       return mesh_around_planned_cut(settings_, study_.segmentation->occupancy, tumor_edge_, line_, workers_, monitor_,
                                      made_skin_, sources_);
     } catch (const InvalidArgument& error) {
-      throw CaseError("case", "meshing", error.text(), "edge lengths and a count that the tissue can be meshed with");
+      throw CaseError("case", "meshing", error.text(),
+                      "edge lengths and a number of tets with which the tissue can be meshed");
     }
   }
 
@@ -369,7 +371,7 @@ class Runner {
     const double round_mm = tip_way_mm(path);
     if (!path.is_closed || settings_.cut.overlap_mm < round_mm) return;
     throw CaseError("case", "cut.overlap_mm", fmt::format("{} mm", settings_.cut.overlap_mm),
-                    fmt::format("less than the {:.1f} mm of the tip's way round the ring", round_mm));
+                    fmt::format("less than the {:.1f} mm that the tip travels round the ring", round_mm));
   }
 
   /// Attaches objections that already refuse the plan to its path, although no cut was made.
@@ -446,7 +448,7 @@ class Runner {
     } else if (cache_.holds(slot)) {
       monitor_.message(
           Severity::Notice,
-          fmt::format("{}: its checkpoint is of other settings or inputs, of another build, or damaged; the cut "
+          fmt::format("{}: its checkpoint is from other settings, inputs or another build, or is damaged; the cut "
                       "starts from the beginning",
                       what));
     }

@@ -38,7 +38,7 @@ void require_equilibrium(const Case& settings, const StaticResult& result, const
         "constraints that the tissue can follow",
         settings.constraints
             ? std::string("Try a smaller displacement or a smaller Poisson's ratio")
-            : fmt::format("The case names none, so the default holds the body. {}. State constraints of its own: for a "
+            : fmt::format("The case states none, so the default ones hold the body. {}. State constraints: for a "
                           "block that was cut out of a scan, a clamp on the side where it was cut off",
                           default_hold_in_words()));
   }

@@ -59,7 +59,7 @@ TriMesh tumor_in_stretched(const Case& settings, const TissueModel& model, std::
           "tumor", "surface",
           fmt::format("vertex {} at ({:.2f}, {:.2f}, {:.2f}) mm, outside the tissue", i, p.x(), p.y(), p.z()),
           fmt::format("every vertex within {} mm of the tissue", settings.surface_tolerance_mm),
-          "Is it in mm, LPS, and drawn on the configuration (rest or stretched) that the case states?");
+          "Is it in mm and LPS, and drawn in the configuration (rest or stretched) that the case states?");
     }
     if (is_at_rest) p = position_of(*point, model.mesh, stretched);
   }

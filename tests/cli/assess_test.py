@@ -96,7 +96,7 @@ class AssessTest(CommandTest):
         done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
         self.assertFalse(script.exists(), "it was written before the advice")
-        self.assertIn("removed, it was written before this advice", done.stderr)
+        self.assertIn("removed, because it was written before this advice", done.stderr)
         self.assertIn("eligibility", doubts())
         self.assertLessEqual(set(before), set(doubts()), "a rejected correction stays one")
 
@@ -175,7 +175,8 @@ class AssessTest(CommandTest):
         small_calibration.write(self.calibration, contrary)
         done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
-        self.assertRegex(done.stderr, "calibration.json: fitted: found photographs that differ by -[0-9.]+ of what simulations do")
+        self.assertRegex(done.stderr, "calibration.json: fitted: found photographs that differ -[0-9.]+ times as much as "
+                                      "the simulations")
         small_calibration.write(self.calibration, farther_out)
         # A correction that expects it itself is assessed, too.
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2, "residual_mm": [1.5]}})
@@ -189,7 +190,7 @@ class AssessTest(CommandTest):
         self.assertEqual(found["advice"], "do_not_use")
         self.assertIsNone(found["expected_gain_mm"])
         self.assertTrue(any("stays open" in reason for reason in found["reasons"]), found["reasons"])
-        self.assertTrue(any("over 234.00 mm, those that the calibration chose over 1.30 mm" in note for note in found["notes"]), found["notes"])
+        self.assertTrue(any("is 234.00 mm, that of the calibration's choice 1.30 mm" in note for note in found["notes"]), found["notes"])
 
     def test_what_cannot_be_is_refused_before_anything_is_written(self):
         self.assert_refused(self.incise(*self.arguments("--stretch-force-n", -1)), BAD_CASE, "--stretch-force-n")
@@ -216,7 +217,8 @@ class AssessTest(CommandTest):
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", "path", "a path of its own")
         small_case.write_case(self.folder / "case")
         small_calibration.write(self.calibration, lambda c: [s.pop("ring") for s in c["specimens"]])
-        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "specimens", "Calibrate anew")
+        self.assert_refused(self.incise(*self.arguments()), BAD_DATA, "calibration.json", "specimens",
+                            "Calibrate again")
         small_calibration.write(self.calibration)
         small_case.write_case(self.folder / "case", {"cut": {"rule": "lattice"}})
         self.assert_refused(self.incise(*self.arguments()), BAD_CASE, "case.yaml", "cut.rule", "lattice", "expected tets")

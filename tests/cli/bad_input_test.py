@@ -261,7 +261,7 @@ class CaseTest(CommandTest):
 
     def test_a_body_that_can_still_move_as_a_whole_is_told(self):
         self.change(specimen={"constraints": [{"kind": "fixed", "where": {"box_mm": [[-1, -1, -1], [41, 0.5, 0.5]]}}]})
-        self.assert_case_refused("deform", BAD_CASE, "case.yaml: specimen.constraints", "1 of 6 rigid motions")
+        self.assert_case_refused("deform", BAD_CASE, "case.yaml: specimen.constraints", "1 of the 6 rigid motions")
 
     def test_constraints_that_contradict_each_other_are_told(self):
         pull = {"kind": "displaced", "where": {"box_mm": [[-1, 50, -1], [41, 61, 20]]}, "displacement_mm": [0, 3, 0]}
@@ -446,7 +446,7 @@ class CaseTest(CommandTest):
     def test_an_interruption_says_that_finished_stages_are_kept(self):
         done = self.interrupted("simulate", "case", "-o", self.out, after="stretch: done")
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
-        self.assertIn("stages that were finished are kept", done.stderr)
+        self.assertIn("the finished stages are kept", done.stderr)
         self.assertTrue((self.out / "stretched" / "stage.json").is_file())
 
     def test_a_damaged_product_says_what_to_remove(self):
@@ -697,13 +697,13 @@ class CommandLineTest(CommandTest):
             ("export p.json --tcp 1 2", "--tcp: found 2 values, expected 6 values"),
             ("run", "case: found nothing, expected "),
             ("run case other", "incise run: found 'other', expected no further argument"),
-            ("run case --frame 3", "incise run: found '--frame', expected an option that it has. Did you mean '--frames'?"),
+            ("run case --frame 3", "incise run: found '--frame', expected one of its options. Did you mean '--frames'?"),
             ("bench cat", "incise bench: found 'cat', expected one of make, cut"),
         ):
             with self.subTest(words=words):
                 done = self.incise(*words.split())
                 # What a range or a number's form says needs no further help.
-                further = () if says.endswith("in digits") else ("--help` explains it",)
+                further = () if says.endswith("in digits") else ("See `incise", "--help`")
                 self.assert_refused(done, BAD_CASE, "incise: command line: " + says, *further)
                 self.assertEqual(done.stderr.count("expected"), 1, done.stderr)
 
@@ -727,7 +727,7 @@ class CommandLineTest(CommandTest):
         self.assert_misuse("mesh", "box.stl", "--fine-mm", "2", "-o", "out.vtu", says="--fine-mm: found no --around")
 
     def test_a_count_that_no_mesh_has_is_told(self):
-        self.assert_misuse("mesh", "box.stl", "--tets", "99", "-o", "out.vtu", says="--tets: found 99, expected 0, or 100 and more")
+        self.assert_misuse("mesh", "box.stl", "--tets", "99", "-o", "out.vtu", says="--tets: found 99, expected 0, or at least 100")
 
     def test_a_mesh_under_the_name_of_another_kind_of_file_is_refused(self):
         self.assert_misuse("mesh", "box.stl", "-o", "out.xyz", says="expected a file that ends in .vtu")

@@ -95,7 +95,7 @@ class CalibrateTest(CommandTest):
     def test_an_interrupted_calibration_keeps_its_runs_and_goes_on(self):
         stopped = self.interrupted("calibrate", self.case, "--observed", self.observed, "-o", self.out, *FEW, after="calibration: 4 simulations")
         self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
-        self.assertIn("run the same command to go on", stopped.stderr)
+        self.assertIn("Run the same command to continue", stopped.stderr)
         self.assertFalse((self.out / "calibration.json").exists())
         self.assertEqual(self.calibrate(*FEW).returncode, DONE)
 

@@ -207,7 +207,7 @@ class TrackTest(CommandTest):
     def test_a_mark_with_a_gap_is_no_ring(self):
         done = self.incise(*self.scene(opening_deg=25.0), "--camera", "mount.json", "--plan", "--json")
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
-        self.assertIn("the mark is not closed: a gap of", done.stderr)
+        self.assertIn("the mark is not closed: it has a gap of", done.stderr)
         result = json.loads(done.stdout)
         self.assertFalse(result["closed_loop"])
         self.assertEqual(result["outcome"], "open_loop")
@@ -315,7 +315,7 @@ class TrackTest(CommandTest):
 
     def test_a_cloud_that_no_camera_sees_is_refused(self):
         for by in ((-1, 1, 1), (1, -1, 1)):
-            self.assert_refused(self.incise(*self.track(self.organised(by=by))), BAD_DATA, "scan.ply: vertices: found columns and rows that run as in a mirror", "as the camera sees them")
+            self.assert_refused(self.incise(*self.track(self.organised(by=by))), BAD_DATA, "scan.ply: vertices: found mirrored columns and rows", "as the camera sees them")
         for by in ((1, 1, -1), (1, -1, -1)):
             self.assert_refused(self.incise(*self.track(self.organised(by=by))), BAD_DATA, "scan.ply: pixel (0, 0): found a point behind the camera", "z above 0")
         self.assert_nothing_written()
@@ -447,7 +447,7 @@ class ProjectTest(CommandTest):
         self.write_transform(converged=False)
         done = self.incise(*self.ARGUMENTS)
         self.assert_refused(done, BAD_DATA, "registration.json")
-        self.assertIn("robot.json is of an earlier run and was left as it is", done.stderr)
+        self.assertIn("robot.json is from an earlier run and was not changed", done.stderr)
         self.assertEqual((self.folder / "robot.json").read_bytes(), older)
 
     def test_a_mark_follows_the_edge_a_millimetre_deep(self):

@@ -66,7 +66,8 @@ class CheckpointTest(CommandTest):
         done = self.stop("simulate", self.checkpoint, signal.SIGINT)
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         self.assertEqual(done.stdout, "")
-        self.assertRegex(done.stderr, r"incise: the cut was interrupted after step \d+; its checkpoint \S+as_planned\.checkpoint\.bin is kept, run the same command to go on\n")
+        self.assertRegex(done.stderr, r"incise: the cut was interrupted after step \d+; its checkpoint "
+                                      r"\S+as_planned\.checkpoint\.bin is kept\. Run the same command to continue\n")
         self.assertEqual({name.split("/")[0] for name in files_below(self.out)},
                          {"study.json", "stretched", "plan", "cache"})
 

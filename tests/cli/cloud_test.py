@@ -37,9 +37,9 @@ class RegisterTest(RegisterCase):
 
     def test_an_input_is_never_the_output(self):
         before = (self.folder / "b.ply").read_bytes()
-        self.assert_refused(self.incise("surface", "b.ply", "-o", "b.ply"), BAD_CASE, "-o: found b.ply, an input")
+        self.assert_refused(self.incise("surface", "b.ply", "-o", "b.ply"), BAD_CASE, "-o: found b.ply, which is an input")
         (self.folder / "same.ply").symlink_to("b.ply")
-        self.assert_refused(self.incise("surface", "b.ply", "-o", "same.ply"), BAD_CASE, "-o: found same.ply, an input")
+        self.assert_refused(self.incise("surface", "b.ply", "-o", "same.ply"), BAD_CASE, "-o: found same.ply, which is an input")
         self.assertEqual((self.folder / "b.ply").read_bytes(), before)
         self.json_of(*self.register("--from-identity", source="b.ply"))
         for arguments in (
@@ -211,7 +211,7 @@ class SurfaceTest(CommandTest):
             ("place", [(1.0, 2.0, 3.0)] * 2000, "found all 2000 in one place"),
             ("line", [(0.1 * i, 0.2 * i, 0.3 * i) for i in range(1000)], "found all 1000 on a line"),
             ("wide", wide, "e+31"),
-            ("metres", [(1e3 * x, 1e4 * y, z) for x, y, z in hill(100, 1)], "wide, expected millimetres of tissue"),
+            ("metres", [(1e3 * x, 1e4 * y, z) for x, y, z in hill(100, 1)], "wide, expected at most 100000 mm of tissue"),
             ("one", [(1.0, 2.0, 3.0)], "1 "),
         ):
             with self.subTest(cloud=name):

@@ -96,7 +96,7 @@ class ForecastTest(CommandTest):
     def test_a_calibration_without_rings_is_refused(self):
         calibration = small_calibration.write(self.folder / "calibration.json", lambda c: [s.pop("ring") for s in c["specimens"]])
         done = self.incise("forecast", "case", "--calibration", calibration, "-o", self.out)
-        self.assert_refused(done, BAD_DATA, "calibration.json", "specimens", "Calibrate anew")
+        self.assert_refused(done, BAD_DATA, "calibration.json", "specimens", "Calibrate again")
         self.assert_nothing_written()
         done = self.incise("forecast", "case", "--calibration", "none.json", "-o", self.out)
         self.assert_refused(done, BAD_DATA, "none.json")

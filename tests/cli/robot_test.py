@@ -86,7 +86,7 @@ class ExportTest(RobotTest):
     def test_a_path_through_the_tumour_is_unsafe(self):
         path = ring()
         path["waypoints"][12]["position_mm"] = [600.0, 8.0, 100.0]
-        self.assert_unsafe(path, "margin", "at waypoint 12", "has to be >= 2.2 mm")
+        self.assert_unsafe(path, "margin", "at waypoint 12", "must be >= 2.2 mm")
 
     def test_an_unreachable_path_is_unsafe(self):
         self.assert_unsafe(ring(center=(1600.0, 0.0, 100.0)), "reach", "at waypoint 0", "too_far")
@@ -100,12 +100,12 @@ class ExportTest(RobotTest):
             if done.returncode != DONE:
                 break
             (self.folder / "cut.script").unlink()
-        self.assert_unsafe(path, "singularity", "at waypoint", "has to be >= 0.03", options=["--open"])
+        self.assert_unsafe(path, "singularity", "at waypoint", "must be >= 0.03", options=["--open"])
 
     def test_a_mark_has_a_list_of_its_own(self):
         mark = ring(radius=10.0, depth=1.0, speed=2.0, kind="mark")
         self.json_of("export", self.write(mark), "--kind", "mark", "-o", "mark.script")
-        self.assert_unsafe(ring(radius=10.5, depth=1.0, speed=2.0, kind="mark"), "edge_distance", "has to be <= 0.3 mm")
+        self.assert_unsafe(ring(radius=10.5, depth=1.0, speed=2.0, kind="mark"), "edge_distance", "must be <= 0.3 mm")
         self.assert_unsafe(ring(radius=10.0, depth=2.0, speed=2.0, kind="mark"), "depth", "1 mm")
         self.assert_unsafe(ring(radius=10.0, depth=1.0, speed=7.0, kind="mark"), "speed_max")
 
@@ -210,7 +210,7 @@ class ExportTest(RobotTest):
         done = self.incise("export", self.write(line), "--open", "-o", "cut.script", "--json")
         self.assertEqual(done.returncode, DONE, done.stderr)
         self.assertIn("not checked with --open: closed, gap, encloses", done.stderr)
-        self.assertIn("closed, gap, encloses: the path is not asked to be a ring", json.loads(done.stdout)["checks_not_made"])
+        self.assertIn("closed, gap, encloses: the path need not be a ring", json.loads(done.stdout)["checks_not_made"])
 
     def test_a_turned_tool_drops_no_check_of_its_shaft(self):
         (self.folder / "flat.obj").write_text("v 300 -300 100\nv 900 -300 100\nv 900 300 100\nv 300 300 100\nf 1 2 3 4\n")
@@ -229,7 +229,7 @@ class ExportTest(RobotTest):
 
     def test_a_tumour_edge_without_area_is_unsafe(self):
         line = [[600, 0, 100], [605, 0, 100], [610, 0, 100]]
-        self.assert_unsafe({**ring(), "tumor_edge": line}, "margin", "lie on a line or in one place")
+        self.assert_unsafe({**ring(), "tumor_edge": line}, "margin", "lie on a line or coincide")
 
     def test_a_tumour_edge_that_is_no_tumour_is_refused(self):
         triangle = [[600, 0, 100], [600.2, 0, 100], [600.1, 0.1, 100]]
@@ -277,7 +277,7 @@ class ExportTest(RobotTest):
     def test_an_input_is_never_the_output(self):
         path = self.write(ring())
         before = (self.folder / path).read_bytes()
-        self.assert_refused(self.incise("export", path, "--format", "json", "-o", path), BAD_CASE, "-o: found path.json, an input")
+        self.assert_refused(self.incise("export", path, "--format", "json", "-o", path), BAD_CASE, "-o: found path.json, which is an input")
         self.assertEqual((self.folder / path).read_bytes(), before)
         self.assertEqual(self.incise("export", path, "-o", "cut.script").returncode, DONE)
         self.json_of("replay", "cut.script", "-o", "played")
@@ -285,13 +285,13 @@ class ExportTest(RobotTest):
         self.assert_refused(self.incise("replay", "played/cut.script", "-o", "played"), BAD_CASE, "-o: found played, which holds the input played/cut.script")
         self.assertTrue((self.folder / "played" / "cut.script").is_file())
         done = self.incise("report", "--replay", "played", "-o", "played/replay.json")
-        self.assert_refused(done, BAD_CASE, "-o: found played/replay.json, in the input played")
+        self.assert_refused(done, BAD_CASE, "-o: found played/replay.json, which is inside the input played")
 
     def test_heat_that_reaches_the_tumour_edge_is_not_exported(self):
         slow = ring(speed=0.6)  # 5 mm outside the edge
         self.json_of("export", self.write(slow), "-o", "slow.script")  # nobody knows its power
         options = ["--power-w", "35"]
-        self.assert_unsafe(slow, "heat", "5 mm at waypoint", "has to be >= 32.", options=options)
+        self.assert_unsafe(slow, "heat", "5 mm at waypoint", "must be >= 32.", options=options)
         self.json_of("export", self.write(ring(speed=7.0)), *options, "-o", "fast.script")
         done = self.incise("export", self.write(slow), *options, "--override", "heat", "-o", "slow.script")
         self.assertEqual(done.returncode, DONE, done.stderr)
@@ -315,7 +315,7 @@ class ExportTest(RobotTest):
     def test_a_refusal_says_that_an_older_program_was_left(self):
         self.assertEqual(self.incise("export", self.write(ring()), "-o", "cut.script").returncode, DONE)
         older = (self.folder / "cut.script").read_bytes()
-        says = "cut.script is of an earlier run and was left as it is"
+        says = "cut.script is from an earlier run and was not changed"
         unsafe = self.incise("export", self.write(ring(radius=11.0)), "-o", "cut.script", "--json")
         self.assertEqual(unsafe.returncode, NOT_ACCEPTABLE)
         self.assertEqual(json.loads(unsafe.stdout)["stale_output"], "cut.script")

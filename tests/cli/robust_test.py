@@ -89,7 +89,7 @@ class RobustTest(CommandTest):
         stopped = self.interrupted("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, "--threads", 1,
                                    after="tissue of the calibration: 3 cuts")
         self.assertEqual(stopped.returncode, INTERRUPTED, stopped.stderr)
-        self.assertIn("run the same command to go on", stopped.stderr)
+        self.assertIn("Run the same command to continue", stopped.stderr)
         self.assertFalse((self.out / "robust").exists())
         self.assertTrue((self.out / "corrected").exists())
         self.robust()

@@ -188,7 +188,7 @@ class CompareTest(ContourTest):
         self.json_of("evaluate", "--incision", "mid.csv", "--tumor", "tumor.csv", "-o", "mid.json")
         self.assert_refused(self.incise("compare", "--before", "s1.json", "--after", "mid.json"), BAD_DATA, "mid.json", "contour",
                             "centerline", "inner_edge")
-        self.assert_refused(self.incise("compare", "--before", "s1.json", "--after", "s1.json"), BAD_CASE, "--after", "s1.json again")
+        self.assert_refused(self.incise("compare", "--before", "s1.json", "--after", "s1.json"), BAD_CASE, "--after", "s1.json twice")
 
     def test_paired_specimens_may_have_targets_of_their_own(self):
         self.four()
@@ -223,7 +223,7 @@ class AuditTest(CommandTest):
         self.assertEqual(done.returncode, NOT_ACCEPTABLE)
         said = done.stdout
         self.assertIn("speed_mm_s 17, dullness 5", said)
-        self.assertIn("pooled mean 0.8 lies outside its parts", said)
+        self.assertIn("pooled mean 0.8 lies outside the means of its parts", said)
 
     def test_a_table_that_passes(self):
         (self.folder / "t.csv").write_text("mean_mm,sd_mm,max_mm\n1.0,0.5,2.0\n")

@@ -117,7 +117,7 @@ class VerdictTest(CommandTest):
         case = self.write()
         small_case.write_tumor_surface(case / "tumor.stl", scale=1e-3)  # metres
         done = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED)
-        self.assert_refused(done, BAD_CASE, "tumor.surface", "2 to 100 mm", "Lengths are mm")
+        self.assert_refused(done, BAD_CASE, "tumor.surface", "2 to 100 mm", "Lengths are in mm")
 
     def test_a_typed_transform_of_a_real_body_is_a_caution(self):
         self.begin_with_a_run()
@@ -238,7 +238,7 @@ class VerdictTest(CommandTest):
         self.write(small_case.merged(small_case.SOUND, {"plan": {"close_margin_mm": 2.2}}))
         done = self.incise("simulate", "case", "-o", self.out)
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
-        self.assertIn("program: removed, it was made with other settings", done.stderr)
+        self.assertIn("program: removed, because the settings, inputs or version have changed", done.stderr)
         self.assert_no_program()
         self.assertFalse((self.out / "correction").exists(), "it was judged by another margin")
 

@@ -62,12 +62,13 @@ TEST(CutInvariants, HoldAtEveryStepOfACut) {
 }
 
 TEST(CutInvariants, SeeATetThatVanishedWithoutARecord) {
-  EXPECT_TRUE(says(found_after([](CutState& s) { s.tissue.is_live[0] = 0; }), "tet 0 is gone and not in the record"));
+  EXPECT_TRUE(
+      says(found_after([](CutState& s) { s.tissue.is_live[0] = 0; }), "tet 0 was removed but is not in the record"));
 }
 
 TEST(CutInvariants, SeeARemovedTetThatLives) {
   EXPECT_TRUE(says(found_after([](CutState& s) { s.tissue.is_live[s.record.removals[0].tet.index()] = 1; }),
-                   "in the record and live"));
+                   "is live but is in the record"));
 }
 
 TEST(CutInvariants, SeeATetThatWasRemovedTwice) {
@@ -126,8 +127,8 @@ TEST(CutInvariants, SeeTearingBeyondTheDose) {
 }
 
 TEST(CutInvariants, SeeABondToWhatIsGone) {
-  EXPECT_TRUE(
-      says(found_after([](CutState& s) { s.bonds.front().tet = s.record.removals.front().tet; }), "is held and gone"));
+  EXPECT_TRUE(says(found_after([](CutState& s) { s.bonds.front().tet = s.record.removals.front().tet; }),
+                   "is held but was removed"));
 }
 
 TEST(CutInvariants, SeeBondsOutOfOrder) {

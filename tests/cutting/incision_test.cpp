@@ -171,7 +171,7 @@ TEST_F(Incision, SaysWhenItsStepsAreTooFewForTheFrames) {
   EXPECT_TRUE(warnings_with(40).empty());
   const std::vector<std::string> said = warnings_with(400);
   ASSERT_EQ(said.size(), 1U);
-  EXPECT_NE(said[0].find("frames in place of 400"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("frames instead of 400"), std::string::npos) << said[0];
 }
 
 TEST_F(Incision, SaysThatItBrokeOffWhereAPositionIsNoLongerFinite) {

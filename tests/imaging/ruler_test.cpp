@@ -326,8 +326,8 @@ TEST(FindRuler, NamesBothSpacingsOfARulerWithTwo) {
   const Said said = said_of(photographed(drawn));
   EXPECT_EQ(said.what, "refused");
   EXPECT_THAT(said.message, HasSubstr("ticks of two spacings"));
-  EXPECT_THAT(said.message, ::testing::ContainsRegex("of 16\\.[67][0-9] pixels"));
-  EXPECT_THAT(said.message, ::testing::ContainsRegex("of 33\\.[23][0-9] pixels"));
+  EXPECT_THAT(said.message, ::testing::ContainsRegex(" 16\\.[67][0-9] pixels apart"));
+  EXPECT_THAT(said.message, ::testing::ContainsRegex(" 33\\.[23][0-9] pixels apart"));
 }
 
 TEST(FindRuler, TakesTheSameUnitOnBothEdges) {

@@ -157,7 +157,8 @@ TEST(VerdictJson, RefusesAStatusThatIsNotThatOfItsReasonsAndASeverityThatIsNotIt
     change(document);
     return data_error_of([&] { static_cast<void>(from_json<Verdict>(document, "x")); });
   };
-  EXPECT_THAT(says([](auto& found) { found["status"] = "ok"; }), HasSubstr("expected refused, that of the worst reason"));
+  EXPECT_THAT(says([](auto& found) { found["status"] = "ok"; }),
+              HasSubstr("expected refused, the severity of the worst reason"));
   EXPECT_THAT(says([](auto& found) { found["reasons"][0]["severity"] = "caution"; }), HasSubstr("/reasons/0/severity"));
   EXPECT_THAT(says([](auto& found) { found["reasons"][0]["id"] = "nonsense"; }), HasSubstr("the id of a rule"));
   EXPECT_THAT(says([](auto& found) { found["reasons"][1].erase("message"); }), HasSubstr("message"));

@@ -45,7 +45,7 @@ TEST(TextTable, RefusesDamageWithItsLine) {
   refusal("a,b\n1\n", "line 2");
   refusal("a,a\n1,2\n", "'a' more than once");
   refusal("a,\n1,2\n", "no name");
-  refusal("a,b\n1,\"2\n", "a quote that does not end");
+  refusal("a,b\n1,\"2\n", "a quote that is not closed");
   refusal("a,b\n1,\"2\"x\n", "after a closing quote");
   refusal("a,b\n1,x\ry\n", "control character (0x0d)");
   refusal("a,b\n1,caf\xe9\n", "not UTF-8");

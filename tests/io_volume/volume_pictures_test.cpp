@@ -92,7 +92,7 @@ TEST_F(PictureFolder, NeedsSpacingAndHounsfieldUnitsStated) {
 
 TEST_F(PictureFolder, RefusesAHoleInTheNumbering) {
   for (const int n : {1, 2, 4}) put(fmt::format("s{}.png", n), n);
-  EXPECT_THAT(failure(), AllOf(HasSubstr("hole"), HasSubstr("'s2.png' and 's4.png'")));
+  EXPECT_THAT(failure(), AllOf(HasSubstr("gap in the numbering"), HasSubstr("'s2.png' and 's4.png'")));
 }
 
 TEST_F(PictureFolder, RefusesTwoPicturesOfOneNumberAndTwoStacks) {

@@ -132,7 +132,7 @@ TEST(TissueModel, RefusesABodyThatCanStillMoveAsAWhole) {
   const auto line = FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(21, 1, 1))}};
   const auto [field, message] = refusal([&] { static_cast<void>(block({line})); });
   EXPECT_EQ(field, "specimen.constraints");
-  EXPECT_THAT(message, HasSubstr("found 1 of 6 rigid motions"));  // the turn about that line
+  EXPECT_THAT(message, HasSubstr("found 1 of the 6 rigid motions"));  // the turn about that line
 }
 
 TEST(TissueModel, AcceptsThreePlanesOfSymmetry) {
@@ -144,7 +144,7 @@ TEST(TissueModel, AcceptsThreePlanesOfSymmetry) {
 TEST(TissueModel, DoesNotCountASupportAsHolding) {
   const auto [field, message] = refusal([] { static_cast<void>(block({SupportConstraint{}})); });
   EXPECT_EQ(field, "specimen.constraints");
-  EXPECT_THAT(message, AllOf(HasSubstr("6 of 6"), HasSubstr("only pushes")));
+  EXPECT_THAT(message, AllOf(HasSubstr("6 of the 6"), HasSubstr("only pushes")));
 }
 
 TEST(TissueModel, RefusesLoadsWhoseForceIsNotFiniteAndDisplacementsFarBeyondTheBody) {

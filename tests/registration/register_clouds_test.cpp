@@ -292,7 +292,8 @@ TEST(PoseObservability, NamesTheMotionWhoseStandardDeviationItGives) {
 }
 
 TEST(RivalReason, DividesByNoScoreOfZero) {
-  EXPECT_EQ(rival_reason(0.5, 0.625), "another pose fits about as well: 80 % of the score");
+  EXPECT_EQ(rival_reason(0.5, 0.625),
+            "another pose fits about as well: its score is 80 % of the score of the pose found");
   EXPECT_EQ(rival_reason(0.5, 0.0), "another pose fits better: its score is 0.500, that of the pose found is 0");
 }
 

@@ -101,7 +101,7 @@ TEST(CheckProgram, FindsADepthThatIsNotThePlannedOne) {
   EXPECT_THAT(failures_of(path), ::testing::ElementsAre("depth"));
   for (Waypoint& waypoint : path.waypoints) waypoint.depth_mm = 1.5;
   const std::string said = named(check_program(make_program(path), path), "depth").message();
-  EXPECT_THAT(said, ::testing::HasSubstr("the depth that the path gives (1.5 mm there) and the planned 5 mm"));
+  EXPECT_THAT(said, ::testing::HasSubstr("the path's depth (1.5 mm there) and the planned 5 mm"));
 }
 
 TEST(CheckProgram, FindsHeatThatReachesTheTumourEdge) {
@@ -145,19 +145,19 @@ TEST(CheckProgram, NamesTheEdgePointThatIsWorst) {
   EXPECT_THAT(failures(high), ::testing::ElementsAre("encloses"));
   EXPECT_NEAR(named(high, "encloses").value, 25.0, 1e-9);
   EXPECT_NEAR(static_cast<double>(named(high, "encloses").waypoint.value()), 12.0, 1.0);
-  EXPECT_THAT(named(high, "encloses").message(),
-              ::testing::AllOf(::testing::HasSubstr("encloses: 25 mm at waypoint 1"),
-                               ::testing::HasSubstr("has to be <= 20 mm"),
-                               ::testing::HasSubstr("lies above it, at 600.00, 10.00, 125.00 mm")));
+  EXPECT_THAT(
+      named(high, "encloses").message(),
+      ::testing::AllOf(::testing::HasSubstr("encloses: 25 mm at waypoint 1"), ::testing::HasSubstr("must be <= 20 mm"),
+                       ::testing::HasSubstr("lies above the ring, at 600.00, 10.00, 125.00 mm")));
   path.tumor_edge.points[12].z() -= 50.0;
   EXPECT_THAT(named(check_program(make_program(path), path), "encloses").message(),
-              ::testing::HasSubstr("lies below it, at 600.00, 10.00, 75.00 mm"));
+              ::testing::HasSubstr("lies below the ring, at 600.00, 10.00, 75.00 mm"));
   path = ring_path();
   path.tumor_edge.points[12].y() = 25.0;  // the ring's radius is 15: 10 mm outside it, next to its waypoint 12
   const auto beyond = check_program(make_program(path), path);
   EXPECT_THAT(failures(beyond), ::testing::Contains("encloses"));
   EXPECT_THAT(named(beyond, "encloses").message(),
-              ::testing::AllOf(::testing::HasSubstr("encloses: not so at waypoint 1"),
+              ::testing::AllOf(::testing::HasSubstr("encloses: not satisfied at waypoint 1"),
                                ::testing::HasSubstr("outside it at 600.00, 25.00, 100.00 mm, by 10.0")));
 }
 
@@ -171,8 +171,8 @@ TEST(CheckProgram, FindsATumourEdgeThatCrossesItself) {
     EXPECT_THAT(failures(checks), ::testing::ElementsAre("margin"));
     // The strands 0 to 23 and 1 to 24 meet above the centre: 10 sin 7.5° · 10 / (10 + 10 cos 7.5°) = 0.655.
     EXPECT_THAT(named(checks, "margin").message(),
-                ::testing::HasSubstr("margin: not so: the tumour edge is a simple curve, seen along the mean axis: it "
-                                     "crosses itself at 600.00, 0.66, 100.00 mm"));
+                ::testing::HasSubstr("margin: not satisfied: the tumour edge is a simple curve, seen along the mean "
+                                     "axis: it crosses itself at 600.00, 0.66, 100.00 mm"));
   }
 }
 
@@ -192,7 +192,7 @@ TEST(CheckProgram, FindsATumourEdgeThatEnclosesNothing) {
     path.tumor_edge.points = edge;
     const auto checks = check_program(make_program(path), path);
     EXPECT_THAT(failures(checks), ::testing::ElementsAre("margin"));
-    EXPECT_THAT(named(checks, "margin").message(), ::testing::HasSubstr("3 points lie on a line or in one place"));
+    EXPECT_THAT(named(checks, "margin").message(), ::testing::HasSubstr("3 points lie on a line or coincide"));
   }
 }
 
@@ -209,7 +209,7 @@ TEST(CheckProgram, AnOpenTumourEdgeHidesNoCutThroughTheTumour) {
 TEST(CheckProgram, ListsWhatAnOpenCutIsNotHeldTo) {
   const ToolPath path = line_path();
   const auto checks = check_program(make_program(path), path, {.must_be_ring = false});
-  EXPECT_THAT(checks.not_made, ::testing::Contains("closed, gap, encloses: the path is not asked to be a ring"));
+  EXPECT_THAT(checks.not_made, ::testing::Contains("closed, gap, encloses: the path need not be a ring"));
 }
 
 TEST(CheckProgram, FindsWaypointsThatAreMissing) {
@@ -296,8 +296,8 @@ TEST(CheckProgram, FindsAPlaceOutOfReachAndNamesItsWaypoint) {
   const auto beyond = check_program(make_program(path), path);
   EXPECT_THAT(failures(beyond), ::testing::ElementsAre("reach"));
   EXPECT_TRUE(named(beyond, "reach").waypoint.has_value());
-  EXPECT_THAT(named(beyond, "reach").message(), ::testing::HasSubstr("reach: not so at waypoint 0 (pose 0)"));
-  EXPECT_THAT(::testing::PrintToString(beyond.not_made), ::testing::HasSubstr("there is no motion of the arm"));
+  EXPECT_THAT(named(beyond, "reach").message(), ::testing::HasSubstr("reach: not satisfied at waypoint 0 (pose 0)"));
+  EXPECT_THAT(::testing::PrintToString(beyond.not_made), ::testing::HasSubstr("no motion of the arm was found"));
 }
 
 TEST(CheckProgram, FindsAWristOverTheShoulder) {

@@ -145,7 +145,7 @@ TEST(Player, EndsAtJointsBeyondTheirLimitsAndNamesLineAndJoint) {
   const Replay turned = replayed(script);
   EXPECT_EQ(turned.outcome, ReplayOutcome::JointLimits);
   EXPECT_EQ(turned.line, line_at(script, start));
-  EXPECT_EQ(turned.reason, "shoulder_pan_joint at 378.2 degrees, which its limits of -360 to 360 leave out");
+  EXPECT_EQ(turned.reason, "shoulder_pan_joint at 378.2 degrees, outside its limits of -360 to 360");
 
   std::string table = table_of(ring_path());
   std::size_t row = table.find("\n0.");
@@ -204,7 +204,7 @@ TEST(Player, AJointThatIsSentFasterThanItCanTurnIsAnOutcome) {
   EXPECT_EQ(fast.outcome, ReplayOutcome::JointSpeed);
   EXPECT_GT(fast.max_joint_speed_share, 1.0);
   EXPECT_GT(fast.line, 20u);
-  EXPECT_THAT(fast.reason, HasSubstr("times the speed that it can turn with"));
+  EXPECT_THAT(fast.reason, HasSubstr("times its greatest speed"));
 }
 
 TEST(Player, ATipThatLeavesItsCourseIsAnOutcome) {
@@ -308,7 +308,7 @@ TEST(ProgramFromText, NamesTheLineOfAForeignOrDamagedStatement) {
   EXPECT_THAT(message_of("This is a letter.\n"), HasSubstr("line 1: found 'This is a letter.', expected def NAME():"));
   EXPECT_THAT(message_of(""), HasSubstr("expected def NAME():"));
   EXPECT_THAT(message_of(with("0.15000000, 0.0000000", "0.16000000, 0.0000000")),
-              HasSubstr("another tool than in the header"));
+              HasSubstr("a tool that differs from the header's"));
   EXPECT_THAT(message_of(with("# phase: plunge", "# phase: plungge")), HasSubstr("phase 'plungge'"));
 }
 

@@ -140,9 +140,9 @@ TEST(MakeProgram, EndsARingTurnedAsItBegan) {
 TEST(MakeProgram, RefusesAxesThatPointTheOtherWay) {
   ToolPath path = ring_path();
   path.waypoints[9].axis = Vec3::UnitZ();
-  EXPECT_THAT(
-      [&] { static_cast<void>(make_program(path)); },
-      ThrowsMessage<InvalidArgument>(HasSubstr("within 120 degrees of their mean, found another at waypoint 9")));
+  EXPECT_THAT([&] { static_cast<void>(make_program(path)); },
+              ThrowsMessage<InvalidArgument>(
+                  HasSubstr("within 120 degrees of their mean, found a larger angle at waypoint 9")));
 }
 
 TEST(MakeProgram, PointsTheToolAlongTheAxisOfItsWaypoint) {

@@ -163,7 +163,7 @@ TEST_F(CalibrationFileTest, GivesAPlannerThePhotographsOfItsRings) {
     EXPECT_THAT([&] { static_cast<void>(belief_of(found, path())); },
                 ThrowsMessage<DataError>(::testing::AllOf(HasSubstr("calibration.json"), HasSubstr(words))));
   };
-  expect_no_belief(fitted(), "Calibrate anew");
+  expect_no_belief(fitted(), "Calibrate again");
   expect_no_belief(with_rings(8), "9 to 360");
   expect_no_belief(with_rings(361), "9 to 360");
   Calibration other = calibration;

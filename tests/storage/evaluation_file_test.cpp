@@ -76,10 +76,10 @@ TEST_F(EvaluationFileTest, WithoutAnIncisionHasNoErrors) {
 TEST_F(EvaluationFileTest, ASuccessHasPointsAndNoOpenRing) {
   nlohmann::ordered_json json = file_json(shifted_ring());
   json["n_points"] = 0;
-  expect_refused(json, "/n_points", "0 beside the outcome success");
+  expect_refused(json, "/n_points", "0 with the outcome success");
   json = file_json(shifted_ring());
   json["closed_loop"] = false;
-  expect_refused(json, "/closed_loop", "false beside the outcome success");
+  expect_refused(json, "/closed_loop", "false with the outcome success");
 }
 
 TEST_F(EvaluationFileTest, HoldsDistancesOfSpecimensOnlyAndAnOutcomeByName) {

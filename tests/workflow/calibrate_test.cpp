@@ -353,7 +353,7 @@ TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
   const Calibration one = run(request);
   ASSERT_EQ(one.left_out.size(), 1U);
   EXPECT_EQ(one.left_out[0].name, "opens");
-  EXPECT_THAT(one.left_out[0].reason, HasSubstr("no closed ring at two drag lengths"));
+  EXPECT_THAT(one.left_out[0].reason, HasSubstr("a closed ring at fewer than two drag lengths"));
   ASSERT_EQ(one.specimens.size(), 1U);
   EXPECT_EQ(one.specimens[0].name, "closes");
   ASSERT_EQ(one.fit->specimens.size(), 1U);

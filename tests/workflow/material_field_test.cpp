@@ -109,7 +109,8 @@ TEST(MaterialField, HasTheDirectionsOfItsFibreField) {
 
 TEST(MaterialField, RefusesAFibreFieldThatWouldNotActOrIsNotAlone) {
   EXPECT_THAT(refusal(labelled_block(), along_the_block()),
-              AllOf(HasSubstr("specimen.material.fibre_modulus_kpa: found 0 kPa, so that fibre_field changes nothing"),
+              AllOf(HasSubstr("specimen.material.fibre_modulus_kpa: found 0 kPa, with which fibre_field changes "
+                              "nothing"),
                     HasSubstr("above 0")));
   EXPECT_EQ(validate(Material{}, along_the_block()).size(), 1U);
   Material fibrous;
@@ -129,9 +130,8 @@ TEST(MaterialField, RefusesAFibreFieldThatWouldNotActOrIsNotAlone) {
   mesh.cell_data["youngs_modulus_kpa"] = {1, std::vector<double>(12, 30.0)};
   EXPECT_EQ(refusal_of_fibrous(mesh, both), "accepted") << "from_mesh alone gives no directions";
   mesh.cell_data["fibre_direction"] = {3, std::vector<double>(36, 1.0)};
-  EXPECT_THAT(refusal_of_fibrous(mesh, both),
-              AllOf(HasSubstr("specimen.material.fibre_field: found directions of fibres"),
-                    HasSubstr("expected one of the two")));
+  EXPECT_THAT(refusal_of_fibrous(mesh, both), AllOf(HasSubstr("specimen.material.fibre_field: found fibre directions"),
+                                                    HasSubstr("expected one of the two")));
   MaterialVariation beside = along_the_block();
   beside.fibre_field->to = PlaneRegion{Vec3(50, 0, 0), Vec3::UnitX(), std::nullopt};
   EXPECT_THAT(refusal_of_fibrous(labelled_block(), beside),

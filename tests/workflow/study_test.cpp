@@ -166,11 +166,11 @@ TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 4.6, true)), "")
       << "shallower, and deep enough";
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.9, 3.6, true), cut_with(0.3, 2.6, true)),
-              ::testing::HasSubstr("52 % of the planned depth deep at its shallowest, the cut before 72 %"))
+              ::testing::HasSubstr("at its shallowest it reaches 52 % of the planned depth, the cut before 72 %"))
       << "as in the head CT";
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 2.6, true), cut_with(0.3, 3.6, true)), "");
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 5.0, false)),
-              ::testing::HasSubstr("1 of the measured layers (4 mm deep), the cut before 0"));
+              ::testing::HasSubstr("1 of the measured layers (4 mm deep); the cut before left 0"));
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 5.0, false), cut_with(0.3, 5.0, false)), "")
       << "no worse; the verdict refuses both";
 }
@@ -189,7 +189,7 @@ TEST(IsAccepted, ByThePapersRule) {
   paper.method = CompensationMethod::Paper;
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.99), cut_with(0.33)), "");
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.99), cut_with(0.63)),
-              ::testing::HasSubstr("0.63 mm, and has to be below the electrode's radius, 0.50 mm"))
+              ::testing::HasSubstr("0.63 mm, but must be below the electrode's radius, 0.50 mm"))
       << "the paper's own case that is not";
   EXPECT_THAT(objection_to(settings, paper, cut_with(0.3), cut_with(0.4)), ::testing::HasSubstr("0.40 mm, not below the 0.30 mm"))
       << "worse than before";

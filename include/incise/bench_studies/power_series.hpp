@@ -30,10 +30,11 @@ struct PowerRequest {
 };
 inline void describe(Visitor& v, PowerRequest& r) {
   v({"power_w", "Powers of the generator, each once.", "W"}, r.powers_w, kPositive);
-  v({"speed_mm_s", "Of the series.", "mm/s"}, r.speed_mm_s, kPositive);
-  v({"speeds_mm_s", "Also cut at these speeds, with the chosen power; each once.", "mm/s"}, r.speeds_mm_s, kPositive);
+  v({"speed_mm_s", "Speed of the tool in the series.", "mm/s"}, r.speed_mm_s, kPositive);
+  v({"speeds_mm_s", "Speeds at which every specimen is also cut, with the chosen power; each once.", "mm/s"},
+    r.speeds_mm_s, kPositive);
   describe(v, r.limits);
-  v("resolution", r.resolution, "Of the bench's meshes and steps.");
+  v("resolution", r.resolution, "Resolution of the bench's meshes and steps.");
 }
 /// Returns every violation; empty if the request is valid.
 [[nodiscard]] std::vector<Problem> validate(const PowerRequest& request);
@@ -57,12 +58,12 @@ struct PowerSeries {
 inline void describe(Visitor& v, PowerSeries& s) {
   v.derived("verdict", std::string(s.choice.chosen_w ? "chosen" : "no_power_fits"), "Whether a power fits.");
   v({"chosen_w", "The lowest power that fits.", "W"}, s.choice.chosen_w);
-  v({"speed_mm_s", "Of the series.", "mm/s"}, s.speed_mm_s);
-  v("limits", s.limits, "That powers were judged by.");
-  v("powers", s.choice.powers, "With the reasons against each, ascending.");
-  v("rows", s.cuts, "Specimen by specimen, powers as they were asked for.");
-  v("speed_rows", s.speed_cuts, "Likewise at the chosen power.");
-  v.internal("made", s.made, "Cuts made now; the others were there already.");
+  v({"speed_mm_s", "Speed of the tool in the series.", "mm/s"}, s.speed_mm_s);
+  v("limits", s.limits, "Limits by which powers were judged.");
+  v("powers", s.choice.powers, "Powers in ascending order, with the reasons against each.");
+  v("rows", s.cuts, "Cuts of the series, specimen by specimen, powers as requested.");
+  v("speed_rows", s.speed_cuts, "Cuts at the chosen power and the requested speeds, specimen by specimen.");
+  v.internal("made", s.made, "Cuts made now; the others were in the cache.");
 }
 
 /// Cuts every specimen of the virtual bench as planned at every power, chooses the lowest power that fits (see

@@ -42,8 +42,8 @@ struct RegistrationQuality {
   double scale = 1.0;    ///< measured size over simulated size
 };
 inline void describe(Visitor& v, RegistrationQuality& r) {
-  v({"rmse_mm", "Of the distances that are left.", "mm"}, r.rmse_mm, kAnatomyMm);
-  v("scale", r.scale, "Of the measured surface over the simulated one.", {1e-3, 1e3});
+  v({"rmse_mm", "Root mean square of the distances that remain.", "mm"}, r.rmse_mm, kAnatomyMm);
+  v("scale", r.scale, "Size of the measured surface over that of the simulated one.", {1e-3, 1e3});
 }
 
 /// One specimen of a calibration.
@@ -72,7 +72,7 @@ struct LeftOutSpecimen {
   std::string reason;
 };
 inline void describe(Visitor& v, LeftOutSpecimen& s) {
-  v("name", s.name, "Of the specimen.");
+  v("name", s.name, "Name of the specimen.");
   v("reason", s.reason, "Why it was left out.");
 }
 

@@ -24,7 +24,7 @@ struct RunSetting {
   bool operator==(const RunSetting&) const = default;
 };
 inline void describe(Visitor& v, RunSetting& s) {
-  v({"speed_mm_s", "Of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
+  v({"speed_mm_s", "Speed of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
   v({"dullness", "Contact needed before a tet is removed, in reference steps.", "steps"}, s.dullness, {1e-6, 1e3});
   v("stiffness_of_case", s.stiffness_of_case, "Young's modulus over that of the case.", {1e-3, 1e3});
 }
@@ -54,20 +54,21 @@ struct CalibrationRun {
   [[nodiscard]] bool is_failure() const { return outcome != Outcome::Success || !paper_success; }
 };
 inline void describe(Visitor& v, CalibrationRun& r) {
-  v("setting", r.setting, "What it was made with, beside its case.");
+  v("setting", r.setting, "Settings of the cut, in addition to its case's.");
   v("reference_step_s", r.reference_step_s, "The time that one unit of dullness represents.", kPositive);
   v("outcome", r.outcome, "How the cut ended.");
-  v("problem", r.problem, "Why it could not be carried out; empty: it was.");
+  v("problem", r.problem, "Why the cut could not be carried out; empty: it was.");
   v("closed_loop", r.closed_loop, "Whether the ring closed.");
-  v("paper_success", r.paper_success, "Success in the paper's sense.");
-  v("signed_error_mm", r.signed_error_mm, "Of the mid-line against the lateral margin.");
-  v("paper_abs_error_mm", r.paper_abs_error_mm, "As the paper scores.");
-  v("inner_signed_error_mm", r.inner_signed_error_mm, "Of the inner edge against margin less radius, tool out.");
-  v("inner_abs_error_mm", r.inner_abs_error_mm, "Its absolute value.");
-  v("inner_edge", r.inner_edge, "Tool out, tissue still stretched.");
+  v("paper_success", r.paper_success, "Whether the cut was a success in the paper's sense.");
+  v("signed_error_mm", r.signed_error_mm, "Signed error of the mid-line against the lateral margin.");
+  v("paper_abs_error_mm", r.paper_abs_error_mm, "Absolute error, as the paper scores it.");
+  v("inner_signed_error_mm", r.inner_signed_error_mm,
+    "Signed error of the inner edge against margin less radius, tool out.");
+  v("inner_abs_error_mm", r.inner_abs_error_mm, "Absolute error of the inner edge.");
+  v("inner_edge", r.inner_edge, "The inner edge, tool out, tissue still stretched.");
   v("final_tumor_edge", r.final_tumor_edge, "The tumour's edge, tool out, tissue still stretched.");
   v("ring", r.ring, "The shallowest ring that closed.");
-  v("tets", r.tets, "Of the mesh before the cut.");
+  v("tets", r.tets, "Number of tets before the cut.");
   v("wall_s", r.wall_s, "Time that the simulation took.");
 }
 

@@ -29,13 +29,16 @@ struct DragFitSettings {
   int samples = 64;
 };
 inline void describe(Visitor& v, DragFitSettings& s) {
-  v("stiffness_sd", s.stiffness_sd, "Of ln(stiffness factor) common to all specimens; its mean is 0.", kPositive);
-  v({"bias_sd_mm", "Of the common bias; its mean is 0.", "mm"}, s.bias_sd_mm, kPositive);
+  v("stiffness_sd", s.stiffness_sd,
+    "Standard deviation of the ln(stiffness factor) common to all specimens; its mean is 0.", kPositive);
+  v({"bias_sd_mm", "Standard deviation of the common bias; its mean is 0.", "mm"}, s.bias_sd_mm, kPositive);
   v({"reading_sd_mm",
-     "Of a sector's error for reading the photograph and the mesh's grain; independent of the others'.", "mm"},
+     "Standard deviation of a sector's error from reading the photograph and from the mesh's grain; independent of the "
+     "other sectors'.",
+     "mm"},
     s.reading_sd_mm, kPositive);
   v("credible", s.credible, "Mass of the credible intervals.", {0.0, 1.0, true, true});
-  v("samples", s.samples, "Of the posterior.", {1.0});
+  v("samples", s.samples, "Number of samples of the posterior.", {1.0});
 }
 
 /// Posterior of one parameter.
@@ -49,13 +52,13 @@ struct ParameterEstimate {
   std::vector<double> density;  ///< integrates to 1
 };
 inline void describe(Visitor& v, ParameterEstimate& e) {
-  v("mean", e.mean, "Of the posterior.");
-  v("sd", e.sd, "Of the posterior.");
+  v("mean", e.mean, "Mean of the posterior.");
+  v("sd", e.sd, "Standard deviation of the posterior.");
   v("low", e.low, "Lower end of the equal-tailed credible interval.");
-  v("high", e.high, "Its upper end.");
-  v("prior_sd", e.prior_sd, "Of the prior.");
-  v("grid", e.grid, "Places at which the marginal density is given.");
-  v("density", e.density, "There; it integrates to 1.");
+  v("high", e.high, "Upper end of that interval.");
+  v("prior_sd", e.prior_sd, "Standard deviation of the prior.");
+  v("grid", e.grid, "Values at which the marginal density is given.");
+  v("density", e.density, "Marginal density at these values; it integrates to 1.");
 }
 
 /// Difference between photograph and simulation, estimated from the data. Standard deviations unless stated otherwise.
@@ -68,12 +71,15 @@ struct ResidualEstimate {
   double n_effective = 0.0;         ///< number of independent values that one contour is worth for its mean
 };
 inline void describe(Visitor& v, ResidualEstimate& r) {
-  v({"sd_mm", "Along the contour.", "mm"}, r.sd_mm, kAnatomyMm);
-  v({"correlation_deg", "Angle over which the correlation falls to 1/e.", "deg"}, r.correlation_deg, {1e-6, 1e5});
-  v({"reading_mm", "From sector to sector, independent.", "mm"}, r.reading_mm, kAnatomyMm);
-  v({"specimen_spread_mm", "Of the bias from specimen to specimen.", "mm"}, r.specimen_spread_mm, kAnatomyMm);
-  v({"placement_mm", "Of the shift of a cut as a whole, along each axis.", "mm"}, r.placement_mm, kAnatomyMm);
-  v("n_effective", r.n_effective, "Independent places that one contour is worth.", {1e-6, 1e6});
+  v({"sd_mm", "Standard deviation of the part that is correlated along the contour.", "mm"}, r.sd_mm, kAnatomyMm);
+  v({"correlation_deg", "Angle over which that correlation falls to 1/e.", "deg"}, r.correlation_deg, {1e-6, 1e5});
+  v({"reading_mm", "Standard deviation of the part that is independent from sector to sector.", "mm"}, r.reading_mm,
+    kAnatomyMm);
+  v({"specimen_spread_mm", "Standard deviation of the bias from specimen to specimen.", "mm"}, r.specimen_spread_mm,
+    kAnatomyMm);
+  v({"placement_mm", "Standard deviation of the shift of a whole cut, along each axis.", "mm"}, r.placement_mm,
+    kAnatomyMm);
+  v("n_effective", r.n_effective, "Number of independent values that one contour is worth.", {1e-6, 1e6});
 }
 
 struct PosteriorSample {
@@ -83,10 +89,11 @@ struct PosteriorSample {
   double bias_mm = 0.0;           ///< to be added to simulated signed errors
 };
 inline void describe(Visitor& v, PosteriorSample& s) {
-  v("weight", s.weight, "All together 1.", {1e-300, 1.0 + 1e-6});
-  v({"drag_length_mm", "How far held tissue is drawn along.", "mm"}, s.drag_length_mm, kAnatomyMm);
-  v("stiffness_factor", s.stiffness_factor, "Over the reference.", {1e-3, 1e3});
-  v({"bias_mm", "To be added to simulated signed errors.", "mm"}, s.bias_mm, {-10.0, 10.0});
+  v("weight", s.weight, "Weight of the sample; all weights add up to 1.", {1e-300, 1.0 + 1e-6});
+  v({"drag_length_mm", "Speed times dwell: how far the tool travels while it holds a tet.", "mm"}, s.drag_length_mm,
+    kAnatomyMm);
+  v("stiffness_factor", s.stiffness_factor, "Young's modulus over the specimen's reference.", {1e-3, 1e3});
+  v({"bias_mm", "Bias, to be added to simulated signed errors.", "mm"}, s.bias_mm, {-10.0, 10.0});
 }
 
 /// The fit of one specimen: signed errors by sector.
@@ -99,12 +106,12 @@ struct SpecimenFit {
   std::optional<double> check_rms_mm;  ///< of simulated_mm + bias − fitted_mm: the error of interpolation
 };
 inline void describe(Visitor& v, SpecimenFit& s) {
-  v("name", s.name, "Of the specimen.");
-  v.derived("rms_mm", s.rms_mm, "Of observed less fitted errors.");
-  v({"check_rms_mm", "Of simulated less fitted errors.", "mm"}, s.check_rms_mm);
+  v("name", s.name, "Name of the specimen.");
+  v.derived("rms_mm", s.rms_mm, "Root mean square of observed minus fitted errors.");
+  v({"check_rms_mm", "Root mean square of simulated minus fitted errors.", "mm"}, s.check_rms_mm);
   v({"observed_mm", "Signed error round the ring, as photographed.", "mm"}, s.observed_mm);
-  v({"fitted_mm", "The same at the posterior means.", "mm"}, s.fitted_mm);
-  v.derived("simulated_mm", s.simulated_mm, "The same, cut anew at those values.");
+  v({"fitted_mm", "Fitted signed error round the ring, at the posterior means.", "mm"}, s.fitted_mm);
+  v.derived("simulated_mm", s.simulated_mm, "Signed error of a new simulated cut at those values.");
 }
 
 /// The posterior of (drag length, ln stiffness factor, bias).

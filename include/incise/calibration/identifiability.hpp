@@ -31,13 +31,13 @@ struct ParameterVerdict {
   bool is_at_limit = false;  ///< drag length only: interval ends where the simulations end; the truth may lie beyond
 };
 inline void describe(Visitor& v, ParameterVerdict& p) {
-  v.bulk("name", p.name, "Of the parameter.");
-  v("told", p.told, "How far the data identify it.");
+  v.bulk("name", p.name, "Name of the parameter.");
+  v("told", p.told, "How well the data identify the parameter.");
   v("share_of_prior_sd", p.share_of_prior_sd, "Posterior sd over that of the prior.");
   std::optional<std::string> tied_to = p.tied_to.empty() ? std::nullopt : std::optional(p.tied_to);
-  v("tied_to", tied_to, "The other parameter with which it is correlated.");
+  v("tied_to", tied_to, "The other parameter with which it is most strongly correlated.");
   if (v.sets()) p.tied_to = tied_to.value_or("");
-  v("correlation", p.correlation, "With that one.");
+  v("correlation", p.correlation, "Correlation with that parameter.");
   v("at_limit", p.is_at_limit, "Whether its interval ends where the simulations end.");
 }
 

@@ -28,13 +28,13 @@ struct SpeedEstimate {
   double recommended_mm_s = 0.0;         ///< the mean rounded to a whole mm/s; below 1 mm/s to one significant digit
 };
 inline void describe(Visitor& v, SpeedEstimate& e) {
-  v("cuts", e.cuts, "How many.");
-  v({"mean_mm_s", "Of the cuts' speeds, each counted once however long it is.", "mm/s"}, e.mean_mm_s);
-  v({"sample_sd_mm_s", "Divided by n - 1; absent for a single cut.", "mm/s"}, e.sample_sd_mm_s);
-  v({"population_sd_mm_s", "Divided by n: what the paper prints.", "mm/s"}, e.population_sd_mm_s);
-  v({"min_mm_s", "Slowest.", "mm/s"}, e.min_mm_s);
-  v({"max_mm_s", "Fastest.", "mm/s"}, e.max_mm_s);
-  v({"recommended_mm_s", "The mean to a whole mm/s; below 1 mm/s to one digit.", "mm/s"}, e.recommended_mm_s);
+  v("cuts", e.cuts, "Number of cuts.");
+  v({"mean_mm_s", "Mean of the cuts' speeds; each cut counts once, whatever its length.", "mm/s"}, e.mean_mm_s);
+  v({"sample_sd_mm_s", "Standard deviation, divided by n - 1; absent for a single cut.", "mm/s"}, e.sample_sd_mm_s);
+  v({"population_sd_mm_s", "Standard deviation, divided by n, as the paper prints it.", "mm/s"}, e.population_sd_mm_s);
+  v({"min_mm_s", "Speed of the slowest cut.", "mm/s"}, e.min_mm_s);
+  v({"max_mm_s", "Speed of the fastest cut.", "mm/s"}, e.max_mm_s);
+  v({"recommended_mm_s", "The mean rounded to a whole mm/s; below 1 mm/s to one digit.", "mm/s"}, e.recommended_mm_s);
 }
 
 /// Estimates a surgeon's speed from timed straight cuts.

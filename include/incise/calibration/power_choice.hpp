@@ -22,15 +22,16 @@ struct PowerCut {
   std::optional<double> mean_abs_error_mm;  ///< of the inner edge; absent: the ring is open
 };
 inline void describe(Visitor& v, PowerCut& c) {
-  v("specimen", c.specimen, "Its name.");
-  v("power_w", c.power_w, "Of the generator.", kPositive);
-  v("speed_mm_s", c.speed_mm_s, "Of the tool.", kPositive);
+  v("specimen", c.specimen, "Name of the specimen.");
+  v("power_w", c.power_w, "Power of the generator.", kPositive);
+  v("speed_mm_s", c.speed_mm_s, "Speed of the tool.", kPositive);
   v("outcome", c.outcome, "success: the ring is closed.");
   v("problem", c.problem, "Why there is no cut at all; empty: there is one.");
   v.derived("closed_loop", c.outcome == Outcome::Success, "Whether the ring is closed.");
   v("bulge_mm", c.bulge_mm, "Height of the skin ahead of the tool above the uncut surface.", kNotNegative);
   v("thermal_width_mm", c.thermal_width_mm, "How far beside the tool's axis heat damaged tissue.", kNotNegative);
-  v("mean_abs_error_mm", c.mean_abs_error_mm, "Of the inner edge; absent: the ring is open.", kNotNegative);
+  v("mean_abs_error_mm", c.mean_abs_error_mm, "Mean |error| of the inner edge; absent: the ring is open.",
+    kNotNegative);
 }
 
 /// Greatest acceptable bulge and thermal width. The paper judged both by eye.
@@ -59,11 +60,12 @@ struct PowerVerdict {
   std::vector<std::string> reasons;  ///< empty: this power fits
 };
 inline void describe(Visitor& v, PowerVerdict& p) {
-  v({"power_w", "Of the generator.", "W"}, p.power_w);
-  v.derived("fits", p.reasons.empty(), "Whether it keeps both limits.");
-  v({"greatest_bulge_mm", "Over the specimens; absent: measured on none.", "mm"}, p.greatest_bulge_mm);
-  v({"greatest_thermal_width_mm", "Likewise.", "mm"}, p.greatest_thermal_width_mm);
-  v("reasons", p.reasons, "Against it; none: this power fits.");
+  v({"power_w", "Power of the generator.", "W"}, p.power_w);
+  v.derived("fits", p.reasons.empty(), "Whether this power keeps both limits.");
+  v({"greatest_bulge_mm", "Greatest bulge over the specimens; absent: measured on none.", "mm"}, p.greatest_bulge_mm);
+  v({"greatest_thermal_width_mm", "Greatest thermal width over the specimens; absent: measured on none.", "mm"},
+    p.greatest_thermal_width_mm);
+  v("reasons", p.reasons, "Reasons against this power; none: it fits.");
 }
 
 /// Which power to cut with.

@@ -26,19 +26,21 @@ struct RingCovariates {
   double pull_deg = 90.0;  ///< of the pull
 };
 inline void describe(Visitor& v, RingCovariates& r) {
-  v({"radius_mm", "Of the circle with the area inside the tumour edge.", "mm"}, r.radius_mm, kAnatomyMm);
-  v("outline", r.outline, "Length of the tumour edge over that circle's.", {1.0, 100.0});
-  v("along", r.along, "Where the edge's middle lies along the pull, from end to end of the body.", {0.0, 1.0});
-  v({"aside_mm", "How far across the pull it lies from the body's middle, positive to the left of the pull.", "mm"},
+  v({"radius_mm", "Radius of the circle with the area inside the tumour edge.", "mm"}, r.radius_mm, kAnatomyMm);
+  v("outline", r.outline, "Length of the tumour edge over the circumference of that circle.", {1.0, 100.0});
+  v("along", r.along, "Where the middle of the tumour edge lies along the pull, from end to end of the body.",
+    {0.0, 1.0});
+  v({"aside_mm", "Distance of that middle from the body's middle, across the pull; positive to the left of the pull.",
+     "mm"},
     r.aside_mm, {-kAnatomyMm.most, kAnatomyMm.most});
-  v({"youngs_modulus_kpa", "By the pull, where it was measured.", "kPa"}, r.youngs_modulus_kpa,
+  v({"youngs_modulus_kpa", "Young's modulus, from the pull where it was measured.", "kPa"}, r.youngs_modulus_kpa,
     {kLeastYoungsModulusKpa, kMostYoungsModulusKpa});
-  v({"lateral_margin_mm", "Prescribed.", "mm"}, r.lateral_margin_mm, kAnatomyMm);
-  v({"depth_mm", "Prescribed.", "mm"}, r.depth_mm, kAnatomyMm);
-  v({"speed_mm_s", "Prescribed.", "mm/s"}, r.speed_mm_s, {1e-6, 1e4});
-  v({"start_deg", "From the edge's middle to where the cut starts, counter-clockwise in the view.", "deg"}, r.start_deg,
-    {-360.0, 360.0});
-  v({"pull_deg", "Of the pull, likewise.", "deg"}, r.pull_deg, {-360.0, 360.0});
+  v({"lateral_margin_mm", "Prescribed lateral margin.", "mm"}, r.lateral_margin_mm, kAnatomyMm);
+  v({"depth_mm", "Prescribed depth.", "mm"}, r.depth_mm, kAnatomyMm);
+  v({"speed_mm_s", "Prescribed speed.", "mm/s"}, r.speed_mm_s, {1e-6, 1e4});
+  v({"start_deg", "Direction from the edge's middle to where the cut starts, counter-clockwise in the view.", "deg"},
+    r.start_deg, {-360.0, 360.0});
+  v({"pull_deg", "Direction of the pull, counter-clockwise in the view.", "deg"}, r.pull_deg, {-360.0, 360.0});
 }
 
 /// The covariates in the order of their names: radius, modulus and speed as logarithms, `aside` without its sign.

@@ -17,7 +17,7 @@ struct PhotographedProfile {
 inline void describe(Visitor& v, PhotographedProfile& p) {
   v({"constant_mm", "Mean signed error of all photographs.", "mm"}, p.constant_mm);
   v({"mean_mm", "The same by sector: a list for compensation.photographed_mm.", "mm"}, p.mean_mm);
-  v({"smoothed_mm", "Of mean_mm, the waves of at most four to a turn.", "mm"}, p.smoothed_mm);
+  v({"smoothed_mm", "The waves of mean_mm of at most four per turn.", "mm"}, p.smoothed_mm);
 }
 
 /// What photographs show beyond the simulation and its bias. A real cut along the planned path is expected to err by
@@ -32,11 +32,12 @@ struct ResidualProfile {
 };
 inline void describe(Visitor& v, ResidualProfile& p) {
   v("simulated_share", p.simulated_share,
-    "How much photographs differ between specimens per simulated difference: for compensation.simulated_share.");
-  v("simulated_share_sd", p.simulated_share_sd, "With which it is known.");
+    "Photographed difference between specimens per simulated difference: for compensation.simulated_share.");
+  v("simulated_share_sd", p.simulated_share_sd, "Standard deviation of that estimate.");
   v({"mean_mm", "Expected beyond that share of simulated error and bias: a list for compensation.residual_mm.", "mm"},
     p.mean_mm);
-  v({"sd_mm", "With which the residual that specimens have in common is known, the same in every sector.", "mm"},
+  v({"sd_mm", "Standard deviation with which the common residual of the specimens is known, the same in every sector.",
+     "mm"},
     p.sd_mm);
   v({"amplitude_mm", "Standard deviation of that residual along the ring.", "mm"}, p.amplitude_mm);
   v({"correlation_deg", "Angle over which its correlation falls to 1/e.", "deg"}, p.correlation_deg);

@@ -15,10 +15,10 @@ struct TissueScenario {
   double bias_mm = 0.0;           ///< expected; to be added to simulated signed errors
 };
 inline void describe(Visitor& v, TissueScenario& t) {
-  v("weight", t.weight, "All together 1.");
+  v("weight", t.weight, "Weight of the tissue; all weights add up to 1.");
   v({"drag_length_mm", "Speed times dwell.", "mm"}, t.drag_length_mm);
   v("stiffness_factor", t.stiffness_factor, "Young's modulus over the specimen's reference.");
-  v({"bias_mm", "Expected; to be added to simulated signed errors.", "mm"}, t.bias_mm);
+  v({"bias_mm", "Expected bias, to be added to simulated signed errors.", "mm"}, t.bias_mm);
 }
 
 /// Returns the tissues to simulate for the next specimen. The first is the one that the posterior expects. If the

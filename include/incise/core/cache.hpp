@@ -77,7 +77,7 @@ class Cache {
     try {
       T value = from_bytes<T>(*bytes, store_->place_of(slot));
       if (fits(value)) return value;
-      throw DataError(store_->place_of(slot), "", "values that do not fit each other", "those that were kept");
+      throw DataError(store_->place_of(slot), "", "values that do not fit each other", "the values that were stored");
     } catch (const std::exception& damaged) {
       report_damage(damaged, monitor);
       return std::nullopt;

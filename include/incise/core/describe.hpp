@@ -333,7 +333,7 @@ void Visitor::visit_list(const Field& field, std::vector<T>& values, const Range
 /// Describes one of several types; the key `kind` names it. A variant type may replace this by its own description.
 template <class... T>
 void describe(Visitor& v, std::variant<T...>& value) {
-  v.kind(Field{"kind", "Which it is."}, value);
+  v.kind(Field{"kind", "Which of the types it is."}, value);
   std::visit([&v](auto& own) { describe(v, own); }, value);
 }
 
@@ -342,7 +342,7 @@ template <class V>
 void describe(Visitor& v, std::map<std::string, V>& values) {
   std::vector<std::string> names;
   for (const auto& [name, value] : values) names.push_back(name);
-  v("names", names, "Of what follows.");
+  v("names", names, "Names of the values that follow.");
   if (v.sets()) values.clear();
   for (const std::string& name : names) v(name, values[name]);
 }

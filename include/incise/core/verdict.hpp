@@ -47,9 +47,9 @@ struct VerdictPlace {
   std::string text;                             ///< for a person: "waypoint 12", "layer 4 mm deep"; may be empty
 };
 inline void describe(Visitor& v, VerdictPlace& p) {
-  v("arclength_mm", p.arclength_mm, "Along the path from its start.", kNotNegative);
-  v("position_mm", p.position_mm, "In the frame of the result that holds the verdict.");
-  v("text", p.text, "For a person.");
+  v("arclength_mm", p.arclength_mm, "Distance along the path from its start.", kNotNegative);
+  v("position_mm", p.position_mm, "Position in the frame of the result that holds the verdict.");
+  v("text", p.text, "The place in words, for a person.");
 }
 
 /// One objection to a cut.

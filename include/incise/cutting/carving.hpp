@@ -27,7 +27,7 @@ struct Bond {
 inline void describe(Visitor& v, Bond& b) {
   v("tet", b.tet, "The tet that is held.");
   v("offset_mm", b.offset_mm,
-    "Of its centroid from the tool's tip when first touched, less what it has slipped since.");
+    "Vector from the tool's tip to the tet's centroid at first contact, less its slip since.");
 }
 
 /// A simulated cut as a value: tissue, doses, bonds, and the record of removed tets.
@@ -47,15 +47,15 @@ struct CutState {
 };
 inline void describe(Visitor& v, CutState& s) {
   v("tissue", s.tissue, "The tissue.");
-  v("dose", s.dose, "Of each tet: removed at 1.");
-  v("tear_dose", s.tear_dose, "The part of it that is the tool's work.");
-  v("bonds", s.bonds, "Ascending tet.");
-  v("points", s.points, "Of a cut by points.");
-  v("splits", s.splits, "Of the mesh, by a cut by points.");
-  v("split_step", s.split_step, "When it was looked at last what has come apart.", kNotNegative);
-  v("tool", s.tool, "Where it is.");
-  v("time_s", s.time_s, "Since the tool began to plunge.");
-  v("step", s.step, "Done so far.", kNotNegative);
+  v("dose", s.dose, "Dose of each tet; it is removed at 1.");
+  v("tear_dose", s.tear_dose, "Part of the dose that comes from the tool's work.");
+  v("bonds", s.bonds, "Bonds, in ascending order of their tets.");
+  v("points", s.points, "Points of a cut by points.");
+  v("splits", s.splits, "Splits of the mesh by a cut by points.");
+  v("split_step", s.split_step, "Step of the last search for tets that have come apart.", kNotNegative);
+  v("tool", s.tool, "Pose of the tool.");
+  v("time_s", s.time_s, "Time since the tool began to plunge.");
+  v("step", s.step, "Number of steps done.", kNotNegative);
   v("record", s.record, "Every tet that was removed.");
 }
 /// Returns the state before the first step: no doses, no bonds, nothing removed.

@@ -21,13 +21,13 @@ struct CutPoints {
   std::vector<Vec3> parted_mm;            ///< per parted point: its current position at that step, mm
 };
 inline void describe(Visitor& v, CutPoints& p) {
-  v("tets", p.tets, "That the tool came near, in that order.");
-  v("tet_of", p.tet_of, "Of the split mesh, with which a point moves.");
-  v("dose", p.dose, "Of each point: parted from 1 on.");
-  v("is_held", p.is_held, "Whether a point is within the tool's reach.");
-  v("offset_mm", p.offset_mm, "Of a held point from the tip when it came within reach, less its slip.");
-  v("parted_step", p.parted_step, "In which a point parted; -1: it did not.");
-  v("parted_mm", p.parted_mm, "Where it was then.");
+  v("tets", p.tets, "Tets near which the tool has come, in that order.");
+  v("tet_of", p.tet_of, "For each point: the tet of the split mesh with which it moves.");
+  v("dose", p.dose, "Dose of each point; from 1 on it is parted.");
+  v("is_held", p.is_held, "For each point: whether it is within the tool's reach.");
+  v("offset_mm", p.offset_mm, "Vector from the tip to each held point when it came within reach, less its slip.");
+  v("parted_step", p.parted_step, "Step in which each point parted; -1: it did not.");
+  v("parted_mm", p.parted_mm, "Position of each parted point at that step.");
 }
 
 }  // namespace incise

@@ -30,12 +30,12 @@ struct Removal {
   double rest_volume_mm3 = 0.0;
 };
 inline void describe(Visitor& v, Removal& r) {
-  v("tet", r.tet, "Which.");
-  v("step", r.step, "In which it was removed.");
-  v("time_s", r.time_s, "Since the tool began to plunge.");
-  v("cause", r.cause, "Why.");
-  v("centroid_mm", r.centroid_mm, "Where it was then.");
-  v("rest_volume_mm3", r.rest_volume_mm3, "Of the tet at rest.");
+  v("tet", r.tet, "Removed tet.");
+  v("step", r.step, "Step in which the tet was removed.");
+  v("time_s", r.time_s, "Time since the tool began to plunge.");
+  v("cause", r.cause, "Cause of the removal.");
+  v("centroid_mm", r.centroid_mm, "Position of the tet's centroid at its removal.");
+  v("rest_volume_mm3", r.rest_volume_mm3, "Volume of the tet at rest.");
 }
 
 /// All removed tets, in order of removal. Within a step: tets whose dose was full, then loose fragments, each in
@@ -50,7 +50,7 @@ struct CutRecord {
   }
 };
 inline void describe(Visitor& v, CutRecord& r) {
-  v("removals", r.removals, "In order.");
+  v("removals", r.removals, "Removed tets, in order.");
 }
 
 }  // namespace incise

@@ -97,49 +97,50 @@ struct CutSettings {
 };
 /// Describes the settings that decide when tissue is cut. A case file adds the tissue's toughness after them.
 inline void describe_effect(Visitor& v, CutSettings& s) {
-  v({"speed_mm_s", "Of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
+  v({"speed_mm_s", "Speed of the simulated tool.", "mm/s"}, s.speed_mm_s, {0.01, 100.0});
   v({"dullness", "Contact needed before a tetrahedron is removed, in reference steps.", "steps"}, s.dullness,
     {0.0, 1000.0, true});
   v({"reference_step_s", "The time that one unit of dullness represents.", "s"}, s.reference_step_s, {0.0, 1.0, true});
-  v.internal("power_w", s.power_w, "Of the electrode.", {0.0, 120.0, true});
+  v.internal("power_w", s.power_w, "Power of the electrode.", {0.0, 120.0, true});
   v({"reference_power_w", "Power for which dullness holds.", "W"}, s.reference_power_w, {0.0, 120.0, true});
   v({"reference_real_speed_mm_s", "Speed of the real tool for which dullness holds.", "mm/s"},
     s.reference_real_speed_mm_s, {0.1, 50.0});
-  v({"reference_depth_mm", "Depth of its tip for which dullness holds.", "mm"}, s.reference_depth_mm, {0.5, 50.0});
+  v({"reference_depth_mm", "Depth of the real tool's tip for which dullness holds.", "mm"}, s.reference_depth_mm,
+    {0.5, 50.0});
   v("power_exponent", s.power_exponent,
-    "Contact cuts (energy per area of the cut, plan.power_w / (plan.speed_mm_s plan.depth_mm), relative to that of the "
-    "references) to this times as fast; 0: none of them has an effect.",
+    "Contact cuts as fast as this power of the relative energy per area of the cut: plan.power_w / (plan.speed_mm_s "
+    "plan.depth_mm) over that of the references. 0: power, speed and depth have no effect.",
     {0.0, 10.0});
-  v.internal("real_speed_mm_s", s.real_speed_mm_s, "Of the real tool.", kPositive);
-  v.internal("depth_mm", s.depth_mm, "Of the real tool's tip.", kPositive);
-  v({"tear_energy_kpa", "Work of the tool per volume at which held tissue tears; absent: it does not.", "kPa"},
+  v.internal("real_speed_mm_s", s.real_speed_mm_s, "Speed of the real tool.", kPositive);
+  v.internal("depth_mm", s.depth_mm, "Depth of the real tool's tip.", kPositive);
+  v({"tear_energy_kpa", "Work of the tool per volume at which held tissue tears; absent: it does not tear.", "kPa"},
     s.tear_energy_kpa, {1e-3, 1e6});
-  v({"slip_mm", "Tissue that the tool has left this far behind slips; absent: never.", "mm"}, s.slip_mm, kPositive);
+  v({"slip_mm", "Distance behind its holding place at which held tissue slips; absent: it never slips.", "mm"},
+    s.slip_mm, kPositive);
 }
 /// Describes the settings of the simulation's steps.
 inline void describe_steps(Visitor& v, CutSettings& s) {
   v({"advance_per_step_mm",
-     "Not with the rule paper: tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
+     "Rules tets and lattice: tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
     s.advance_per_step_mm, {0.01, 10.0});
-  v({"reach_mm", "Not with the rule lattice: tissue is in contact within the tool's radius plus this of its core.",
-     "mm"},
+  v({"reach_mm",
+     "Rules tets and paper: a tetrahedron is in contact within the tool's radius plus this of the tool's core.", "mm"},
     s.reach_mm, {0.0, 5.0});
   v({"bond_stiffness_kpa_mm2",
-     "Not with the rule lattice: pull of the tool on tissue that it holds, per volume and offset; 0: no drag.",
-     "kPa/mm2"},
+     "Rules tets and paper: pull of the tool on tissue that it holds, per volume and offset; 0: no drag.", "kPa/mm2"},
     s.bond_stiffness_kpa_mm2, {0.0, 1e6});
   v({"overlap_mm", "A ring is cut this far beyond its start, less than once round.", "mm"}, s.overlap_mm, {0.0, 50.0});
-  v("residual_tolerance", s.residual_tolerance, "Of each step's linear solve, relative to the contact force.",
+  v("residual_tolerance", s.residual_tolerance, "Tolerance of each step's linear solve, relative to the contact force.",
     {1e-6, 0.3});
-  v.internal("max_step_mm", s.max_step_mm, "Farthest that a vertex moves in one step with the tool in.", kPositive);
+  v.internal("max_step_mm", s.max_step_mm, "Greatest motion of a vertex in one step with the tool in.", kPositive);
   v("rule", s.rule, "What is cut: whole tetrahedra, the points of a lattice, or tetrahedra as the paper does it.");
   v("contact_count", s.contact_count,
-    "Rule paper: what becomes of a tetrahedron's count of steps when contact is lost.");
-  v({"kernel_radius_mm", "Rule lattice: how far from its core (a needle's axis) the tool acts.", "mm"},
+    "Rule paper: what happens to a tetrahedron's count of steps when contact is lost.");
+  v({"kernel_radius_mm", "Rule lattice: distance from its core (a needle's axis) within which the tool acts.", "mm"},
     s.kernel_radius_mm, {0.5, 5.0});
   v({"dose_length_mm",
-     "Rule lattice: where speed times dullness times reference_step_s is this, reference tissue that does not move is "
-     "just cut.",
+     "Rule lattice: value of speed times dullness times reference_step_s at which reference tissue that does not move "
+     "is just cut.",
      "mm"},
     s.dose_length_mm, {0.1, 10.0});
   v({"hold_per_mm2",

@@ -33,12 +33,13 @@ inline void describe(Visitor& v, IncisionSettings& s) {
   v("cut", s.cut, "How the tool cuts.");
   v("tool", s.tool, "The instrument.");
   v("approach", s.approach, "The direction in which camera and surgeon look.");
-  v("midline_layer_mm", s.midline_layer_mm, "The mid-line is that of the kerf down to this depth.", kPositive);
+  v("midline_layer_mm", s.midline_layer_mm, "Depth down to which the kerf counts for the mid-line.", kPositive);
   v("layer_depths_mm", s.layer_depths_mm, "Middles of the layers with a mid-line of their own.");
-  v("tumor_surface", s.tumor_surface, "Stretched tissue before the cut; without triangles: not known.");
-  v({"time_since_stretch_s", "Between the stretch and the cut; absent: viscous tissue has relaxed.", "s"},
+  v("tumor_surface", s.tumor_surface,
+    "The tumour's surface, stretched tissue before the cut; without triangles: not known.");
+  v({"time_since_stretch_s", "Time from the stretch to the cut; absent: viscous tissue has relaxed.", "s"},
     s.time_since_stretch_s, kNotNegative);
-  v("frames", s.frames, "Moments to keep for pictures.", kNotNegative);
+  v("frames", s.frames, "Number of moments to keep for pictures.", kNotNegative);
 }
 
 /// Result of a simulated incision, whether or not it succeeded.
@@ -74,27 +75,28 @@ struct IncisionResult {
 inline void describe(Visitor& v, IncisionResult& r) {
   v("program_outcome", r.outcome, "How the tool's program ended.");
   v("closed_loop", r.is_closed_loop, "Whether the ring closed; absent for an open cut.");
-  v("gap_mm", r.gap_mm, "Of a ring that stayed open: width of the widest uncut bridge.");
-  v("gap_deg", r.gap_deg, "Of a ring that stayed open: largest angle without kerf.");
-  v("kerf_width_mm", r.kerf_width_mm, "Mean, across the mid-line.");
+  v("gap_mm", r.gap_mm, "Width of the widest uncut bridge in a ring that stayed open.");
+  v("gap_deg", r.gap_deg, "Largest angle without kerf in a ring that stayed open.");
+  v("kerf_width_mm", r.kerf_width_mm, "Mean width of the kerf, across the mid-line.");
   v.bulk("centerline", r.centerline, "Mid-line of the kerf, stretched tissue before the cut.");
   v.bulk("inner_edge", r.inner_edge, "Border of the tissue inside the ring, tool out.");
   v.bulk("final_tumor_edge", r.final_tumor_edge, "The tumour's edge, tool out.");
   describe(v, r.kerf);
   v.bulk("record", r.record, "Every tet that was removed.");
-  v.bulk("final_state", r.final_state, "Tool out, tissue still stretched.");
-  v.bulk("frames", r.frames, "Kept for pictures.");
+  v.bulk("final_state", r.final_state, "State with the tool out, tissue still stretched.");
+  v.bulk("frames", r.frames, "Moments kept for pictures.");
   v.bulk("steps", r.steps, "The log, step by step.");
-  v.derived("removed_tets", r.record.removals.size(), "How many.");
-  v.derived("removed_volume_mm3", r.record.removed_volume_mm3(), "Of these tets at rest.");
-  v.derived("steps", r.steps.size(), "How many.");
-  v.derived("ms_per_step", r.steps.empty() ? 0.0 : 1e3 * r.wall_s / static_cast<double>(r.steps.size()), "Wall time.");
-  v("solver_iterations", r.solver_iterations, "Sum over all steps.");
+  v.derived("removed_tets", r.record.removals.size(), "Number of removed tets.");
+  v.derived("removed_volume_mm3", r.record.removed_volume_mm3(), "Volume of these tets at rest.");
+  v.derived("steps", r.steps.size(), "Number of steps.");
+  v.derived("ms_per_step", r.steps.empty() ? 0.0 : 1e3 * r.wall_s / static_cast<double>(r.steps.size()),
+            "Wall time per step.");
+  v("solver_iterations", r.solver_iterations, "Iterations of the linear solver, summed over all steps.");
   v("at_rest", r.is_at_rest, "Whether nothing moved any more in the last step.");
   v("unconverged_steps", r.unconverged_steps, "Steps whose linear solve reached its limit.");
-  v("held_back_vertices", r.held_back_vertices, "Vertex steps that were cut short.");
+  v("held_back_vertices", r.held_back_vertices, "Number of motions of vertices that were cut short, over all steps.");
   v("inverted_tets", r.inverted_tets, "Live tets of negative volume at the end.");
-  v("slipped_bonds", r.slipped_bonds, "Slips, summed over all steps.");
+  v("slipped_bonds", r.slipped_bonds, "Number of slips, summed over all steps.");
   v("peak_tool_force_mn", r.peak_tool_force_mn, "Greatest force on the tool.");
   v("peak_tool_torque_mn_mm", r.peak_tool_torque_mn_mm, "Greatest torque about the tool's tip.");
   v("wall_s", r.wall_s, "Time that the simulation took.");

@@ -17,11 +17,11 @@ struct CutFrame {
   Points positions;  ///< N x 3, mm
 };
 inline void describe(Visitor& v, CutFrame& f) {
-  v("time_s", f.time_s, "Since the tool began to plunge.");
-  v("step", f.step, "After which it is.", kNotNegative);
-  v("tool", f.tool, "Where it is.");
-  v("is_tool_in", f.is_tool_in, "Whether it is in the tissue.");
-  v("positions", f.positions, "Of the vertices.");
+  v("time_s", f.time_s, "Time since the tool began to plunge.");
+  v("step", f.step, "Number of steps done.", kNotNegative);
+  v("tool", f.tool, "Pose of the tool.");
+  v("is_tool_in", f.is_tool_in, "Whether the tool is in the tissue.");
+  v("positions", f.positions, "Positions of the vertices.");
 }
 
 /// One line of the log of a cut.
@@ -37,15 +37,15 @@ struct CutStepLog {
   Vec3 tool_torque_mn_mm = Vec3::Zero();  ///< of the tissue on the tool, about its tip
 };
 inline void describe(Visitor& v, CutStepLog& s) {
-  v("time_s", s.time_s, "Since the tool began to plunge.");
-  v("iterations", s.iterations, "Of the linear solver.");
-  v("converged", s.converged, "Whether the linear solve did not reach its limit.");
-  v("tets_in_contact", s.tets_in_contact, "How many.");
-  v("removed", s.removed, "Tets removed in the step.");
-  v("held_back_vertices", s.held_back_vertices, "Vertices whose step was cut short.");
-  v("slipped", s.slipped, "Bonds, or points, that slipped.");
-  v("tool_force_mn", s.tool_force_mn, "Of the tissue on the tool.");
-  v("tool_torque_mn_mm", s.tool_torque_mn_mm, "Of the tissue on the tool, about its tip.");
+  v("time_s", s.time_s, "Time since the tool began to plunge.");
+  v("iterations", s.iterations, "Iterations of the linear solver.");
+  v("converged", s.converged, "Whether the linear solve reached its tolerance.");
+  v("tets_in_contact", s.tets_in_contact, "Number of tets in contact.");
+  v("removed", s.removed, "Number of tets removed in the step.");
+  v("held_back_vertices", s.held_back_vertices, "Number of vertices whose motion was cut short.");
+  v("slipped", s.slipped, "Number of bonds, or points, that slipped.");
+  v("tool_force_mn", s.tool_force_mn, "Force of the tissue on the tool.");
+  v("tool_torque_mn_mm", s.tool_torque_mn_mm, "Torque of the tissue on the tool, about its tip.");
 }
 
 /// An unfinished incision as a value: the state that, with model, path and settings, determines how it continues, and
@@ -58,10 +58,10 @@ struct IncisionProgress {
   double wall_s = 0.0;  ///< spent so far, all processes together
 };
 inline void describe(Visitor& v, IncisionProgress& p) {
-  v("state", p.state, "Of tissue and tool.");
-  v("relaxation_steps", p.relaxation_steps, "Done since the tool is out.", kNotNegative);
+  v("state", p.state, "State of tissue and tool.");
+  v("relaxation_steps", p.relaxation_steps, "Number of steps done since the tool came out.", kNotNegative);
   v("steps", p.steps, "The log, step by step.");
-  v("frames", p.frames, "Kept for pictures.");
+  v("frames", p.frames, "Moments kept for pictures.");
   v("wall_s", p.wall_s, "Time spent so far.");
 }
 

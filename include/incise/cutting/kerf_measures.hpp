@@ -17,9 +17,9 @@ struct Spread {
   double max = 0.0;
 };
 inline void describe(Visitor& v, Spread& s) {
-  v("mean", s.mean, "Mean.");
-  v("min", s.min, "Least.");
-  v("max", s.max, "Greatest.");
+  v("mean", s.mean, "Mean value.");
+  v("min", s.min, "Least value.");
+  v("max", s.max, "Greatest value.");
 }
 
 /// The kerf in a layer: 1 mm of tissue at a given depth below the skin.
@@ -34,13 +34,13 @@ struct KerfLayer {
   std::optional<Contour> centerline;  ///< mid-line at that depth, stretched tissue before the cut, mm
 };
 inline void describe(Visitor& v, KerfLayer& l) {
-  v("depth_mm", l.depth_mm, "Of the layer's middle, along the approach.");
-  v("within_plan", l.is_within_plan, "Whether the planned depth reaches it.");
-  v("closed_loop", l.is_closed, "Whether a ring closed there.");
-  v("gap_mm", l.gap_mm, "Of a ring that stayed open there: width of the widest uncut bridge.");
+  v("depth_mm", l.depth_mm, "Depth of the layer's middle, along the approach.");
+  v("within_plan", l.is_within_plan, "Whether the planned depth reaches the layer's middle.");
+  v("closed_loop", l.is_closed, "Whether a ring closed in the layer.");
+  v("gap_mm", l.gap_mm, "Width of the widest uncut bridge in a ring that stayed open in the layer.");
   v("gap_place_mm", l.gap_place_mm, "Where that bridge is narrowest, stretched tissue before the cut.");
-  v("kerf_width_mm", l.width_mm, "Mean, there.");
-  v.bulk("centerline", l.centerline, "The mid-line there, stretched tissue before the cut.");
+  v("kerf_width_mm", l.width_mm, "Mean width of the kerf in the layer.");
+  v.bulk("centerline", l.centerline, "The mid-line in the layer, stretched tissue before the cut.");
 }
 
 /// The kerf as a body, in the stretched tissue before the cut: all removed tets or, of a cut by points, the tissue
@@ -54,10 +54,10 @@ struct KerfBody {
 inline void describe(Visitor& v, KerfBody& b) {
   v.begin({"kerf", "Boundary of the removed tets."});
   describe(v, b.boundary);
-  v({"volume_mm3", "Enclosed.", "mm3"}, b.volume_mm3);
-  v.bulk("surface", b.surface, "The boundary, outwards.");
+  v({"volume_mm3", "Volume that the surface encloses.", "mm3"}, b.volume_mm3);
+  v.bulk("surface", b.surface, "The boundary, oriented outwards.");
   v.end();
-  v("live_skin", b.live_skin, "Of the skin of the tissue that is left.");
+  v("live_skin", b.live_skin, "Edges and points where the skin of the remaining tissue touches itself.");
 }
 
 /// Depth of the kerf along the tool's path.
@@ -71,8 +71,8 @@ struct DepthReached {
 inline void describe(Visitor& v, DepthReached& d) {
   describe(v, d.depth_mm);
   v({"planned", "Mean depth of the tool's tip below its entry points.", "mm"}, d.planned_mm);
-  v.bulk("profile", d.profile, "Along the path.");
-  v.bulk("planned_at_mm", d.planned_at_mm, "At each place of the profile.");
+  v.bulk("profile", d.profile, "Depth along the path.");
+  v.bulk("planned_at_mm", d.planned_at_mm, "Planned depth at each place of the profile.");
 }
 
 /// Displacement of tissue, when it is cut, from its place in the stretched, uncut body: along the tool's direction of
@@ -88,12 +88,12 @@ struct TissueDrag {
   Spread drift;  ///< of drift_mm; mean weighted by rest volume
 };
 inline void describe(Visitor& v, TissueDrag& d) {
-  v("time_s", d.time_s, "Ascending.");
-  v("arclength_mm", d.arclength_mm, "That the tip had gone since the plunge.");
+  v("time_s", d.time_s, "Times of the entries, ascending.");
+  v("arclength_mm", d.arclength_mm, "Travel of the tip since the plunge.");
   v("lag_mm", d.lag_mm, "Along the course; positive: dragged ahead.");
   v("drift_mm", d.drift_mm, "Across the course; positive: outwards on a ring.");
-  v("lag", d.lag, "Of the entries, weighted by rest volume.");
-  v("drift", d.drift, "Likewise.");
+  v("lag", d.lag, "Mean, least and greatest lag_mm; the mean is weighted by rest volume.");
+  v("drift", d.drift, "Mean, least and greatest drift_mm; the mean is weighted by rest volume.");
 }
 
 /// Distance from the kerf to the tumour's surface, in the stretched tissue before the cut. A place of the kerf is
@@ -106,10 +106,10 @@ struct DeepMargin {
   Spread floor_below_mm;  ///< along the path: how much deeper the kerf's bottom lies than the tumour's deepest point
 };
 inline void describe(Visitor& v, DeepMargin& m) {
-  v({"nearest", "Least distance of kerf and tumour; negative: the kerf enters it.", "mm"}, m.nearest_mm);
-  v({"beside", "Of what lies beside the tumour.", "mm"}, m.beside_mm);
-  v({"beneath", "Of what lies beneath it.", "mm"}, m.beneath_mm);
-  v({"floor_below", "How much deeper the kerf's bottom is than the tumour.", "mm"}, m.floor_below_mm);
+  v({"nearest", "Least distance between kerf and tumour; negative: the kerf enters the tumour.", "mm"}, m.nearest_mm);
+  v({"beside", "Least distance to the kerf beside the tumour.", "mm"}, m.beside_mm);
+  v({"beneath", "Least distance to the kerf beneath the tumour.", "mm"}, m.beneath_mm);
+  v({"floor_below", "How much deeper the bottom of the kerf lies than the tumour.", "mm"}, m.floor_below_mm);
 }
 
 /// Measures of a cut, apart from its mid-line and inner edge.
@@ -127,12 +127,12 @@ struct KerfMeasures {
 };
 inline void describe(Visitor& v, KerfMeasures& k) {
   describe(v, k.body);
-  v.bulk("layers", k.layers, "As asked for.");
-  v({"depth_reached_mm", "Along the path.", "mm"}, k.depth);
-  v.bulk("drag", k.drag, "Of the tissue when it was cut.");
+  v.bulk("layers", k.layers, "The kerf in the layers that were asked for.");
+  v({"depth_reached_mm", "Depth reached along the path.", "mm"}, k.depth);
+  v.bulk("drag", k.drag, "Lag and drift of the tissue when it was cut.");
   v.derived("lag_mm", k.drag ? std::optional(k.drag->lag) : std::nullopt, "How far tissue was dragged ahead.");
-  v.derived("drift_mm", k.drag ? std::optional(k.drag->drift) : std::nullopt, "How far it was pushed outwards.");
-  v({"deep_margin_mm", "Distance from the tumour's surface.", "mm"}, k.deep_margin);
+  v.derived("drift_mm", k.drag ? std::optional(k.drag->drift) : std::nullopt, "How far tissue was pushed outwards.");
+  v({"deep_margin_mm", "Distance from the kerf to the tumour's surface.", "mm"}, k.deep_margin);
   v.bulk("final_centerline", k.final_centerline, "The mid-line, tool out.");
   v.bulk("inner_edge_reference", k.inner_edge_reference,
          "The inner edge's points in the stretched tissue before the cut.");
@@ -145,9 +145,10 @@ struct ClosedRing {
   Contour midline;             ///< stretched tissue before the cut, moved back along the approach onto the skin, mm
 };
 inline void describe(Visitor& v, ClosedRing& r) {
-  v("depth_mm", r.depth_mm, "Of the layer's middle below the skin.");
-  v("half_width_mm", r.half_width_mm, "Of the kerf there.");
-  v("midline", r.midline, "Stretched tissue before the cut, lifted along the approach to the skin's height.");
+  v("depth_mm", r.depth_mm, "Depth of the layer's middle below the skin.");
+  v("half_width_mm", r.half_width_mm, "Half the width of the kerf in the layer.");
+  v("midline", r.midline,
+    "The mid-line in the stretched tissue before the cut, lifted along the approach to the skin's height.");
 }
 
 /// Returns the ring of the shallowest layer in which it closed; nullopt: it closed in none.

@@ -27,10 +27,10 @@ struct ThermalSettings {
 };
 
 inline void describe(Visitor& v, ThermalSettings& s) {
-  v({"conductivity_w_m_k", "Of heat in tissue; muscle in the IT'IS database.", "W/(m K)"}, s.conductivity_w_m_k,
-    {0.01, 100.0});
-  v({"heat_capacity_mj_m3_k", "Per volume; muscle in the IT'IS database.", "MJ/(m3 K)"}, s.heat_capacity_mj_m3_k,
-    {0.01, 100.0});
+  v({"conductivity_w_m_k", "Thermal conductivity of the tissue; muscle in the IT'IS database.", "W/(m K)"},
+    s.conductivity_w_m_k, {0.01, 100.0});
+  v({"heat_capacity_mj_m3_k", "Heat capacity of the tissue per volume; muscle in the IT'IS database.", "MJ/(m3 K)"},
+    s.heat_capacity_mj_m3_k, {0.01, 100.0});
   v({"body_c", "Temperature of the tissue before the cut.", "°C"}, s.body_c, {-20.0, 60.0});
   v({"damage_c",
      "Temperature at which tissue counts as damaged (Thomsen 1991: coagulation); at least 5 K above body_c.", "°C"},

@@ -68,9 +68,9 @@ struct ToolPose {
                                   ///< along it
 };
 inline void describe(Visitor& v, ToolPose& p) {
-  v("tip_mm", p.tip_mm, "End of the core; a ball's middle.");
-  v("axis", p.axis, "Unit, pointing into the tissue.");
-  v("heading", p.heading, "Unit, across the axis: the direction of travel.");
+  v("tip_mm", p.tip_mm, "End of the core; centre of a ball.");
+  v("axis", p.axis, "Unit vector along the axis, into the tissue.");
+  v("heading", p.heading, "Unit vector in the direction of travel, perpendicular to the axis.");
 }
 
 /// Returns the component of `direction` perpendicular to `axis` (unit), normalised; for a direction along the axis, an

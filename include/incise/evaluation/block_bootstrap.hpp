@@ -39,8 +39,8 @@ struct BootstrapSettings {
 };
 inline void describe(Visitor& v, BootstrapSettings& s) {
   v("replicates", s.replicates, "Replicates of the block bootstrap.", {99.0, 1e6});
-  v("seed", s.seed, "Same seed: same result, bit for bit.");
-  v("level", s.level, "Of the interval.", {0.0, 1.0, true, true});
+  v("seed", s.seed, "Seed of the draws; the same seed gives the same result, bit for bit.");
+  v("level", s.level, "Level of the confidence interval.", {0.0, 1.0, true, true});
 }
 
 /// Result of a two-tailed test of "the means over all points are equal" by circular block bootstrap
@@ -57,13 +57,14 @@ struct BootstrapTest {
   std::uint64_t seed = 0;
 };
 inline void describe(Visitor& v, BootstrapTest& t) {
-  v("p", t.p, "Two-tailed; absent without spread.");
-  v({"difference_mm", "Of the means over all points, after minus before.", "mm"}, t.difference);
-  v({"standard_error_mm", "Of the difference.", "mm"}, t.standard_error);
-  describe_interval(v, {"confidence_mm", "Percentiles of the replicates.", "mm"}, t.confidence);
-  v("verdict", t.verdict, "Whether the test could say anything.");
-  v("replicates", t.replicates, "Draws.");
-  v("seed", t.seed, "Of the draws.");
+  v("p", t.p, "Two-tailed p; absent without spread.");
+  v({"difference_mm", "Difference of the means over all points, after minus before.", "mm"}, t.difference);
+  v({"standard_error_mm", "Standard error of the difference.", "mm"}, t.standard_error);
+  describe_interval(v, {"confidence_mm", "Confidence interval of the difference: percentiles of the replicates.", "mm"},
+                    t.confidence);
+  v("verdict", t.verdict, "Whether the test could be made.");
+  v("replicates", t.replicates, "Number of draws.");
+  v("seed", t.seed, "Seed of the draws.");
 }
 
 /// Tests whether the mean over all points differs between `before` and `after`. In each replicate, every contour is

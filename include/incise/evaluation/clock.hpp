@@ -18,8 +18,8 @@ struct ClockSector {
   std::optional<double> max_mm;
 };
 inline void describe(Visitor& v, ClockSector& s) {
-  v("hour", s.hour, "1 to 12; half an hour to both sides.");
-  v("points", s.points, "How many; 0: no cut there.");
+  v("hour", s.hour, "Hour, 1 to 12; the sector extends half an hour to either side.");
+  v("points", s.points, "Number of points; 0: no cut there.");
   v({"mean_mm", "Mean signed error.", "mm"}, s.mean_mm);
   v({"min_mm", "Least signed error.", "mm"}, s.min_mm);
   v({"max_mm", "Greatest signed error.", "mm"}, s.max_mm);

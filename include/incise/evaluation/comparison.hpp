@@ -36,9 +36,10 @@ struct ComparisonSettings {
 inline void describe(Visitor& v, ComparisonSettings& s) {
   v("measure", s.measure, "Which errors are compared.");
   v("paired", s.is_paired,
-    "Whether before[i] and after[i] are the same specimen; otherwise the specimens are strangers to each other.");
-  v("alpha", s.alpha, "Level of significance; intervals are at 1 - alpha.", {0.0, 1.0, true, true});
-  v("power", s.power, "Power that the next experiment should have: the probability of detecting the effect; more than alpha.",
+    "Whether before[i] and after[i] are the same specimen; otherwise the specimens are unrelated.");
+  v("alpha", s.alpha, "Significance level; confidence intervals are at 1 - alpha.", {0.0, 1.0, true, true});
+  v("power", s.power,
+    "Power that the next experiment should have: the probability of detecting the effect; more than alpha.",
     {0.0, 1.0, true, true});
   describe(v, s.bootstrap);
 }
@@ -61,7 +62,7 @@ struct NamedTest {
 };
 
 inline void describe(Visitor& v, NamedTest& t) {
-  v.derived("test", t.name, "Which one.");
+  v.derived("test", t.name, "Name of the test.");
   describe(v, t.test);
 }
 
@@ -84,15 +85,17 @@ struct PooledTests {
 };
 
 inline void describe(Visitor& v, PooledTests& t) {
-  v.derived("test", std::string("student, pooled by point"), "Which one.");
+  v.derived("test", std::string("student, pooled by point"), "Name of the test.");
   describe(v, t.student);
-  v.derived("n_before", t.before.n, "Points.");
-  v.derived("n_after", t.after.n, "Points.");
-  describe_test(v, {"welch", "With a variance for each side."}, "welch, pooled by point", t.welch);
-  v("effect", t.effect, "Absent where it cannot be computed.");
-  v("n_effective_before", t.n_effective_before, "Independent values that the points are worth.");
-  v("n_effective_after", t.n_effective_after, "Independent values that the points are worth.");
-  v("block_bootstrap", t.bootstrap, "The same question, but neighbours on a contour count as such.");
+  v.derived("n_before", t.before.n, "Number of points before.");
+  v.derived("n_after", t.after.n, "Number of points after.");
+  describe_test(v, {"welch", "Test with a variance for each side."}, "welch, pooled by point", t.welch);
+  v("effect", t.effect, "Effect size; absent if it cannot be computed.");
+  v("n_effective_before", t.n_effective_before,
+    "Number of independent values that carry as much information as the points before.");
+  v("n_effective_after", t.n_effective_after,
+    "Number of independent values that carry as much information as the points after.");
+  v("block_bootstrap", t.bootstrap, "The same test, but with the correlation of neighbours on a contour.");
 }
 
 /// Tests by specimen: each specimen counts once, by its mean error.
@@ -109,24 +112,23 @@ struct SpecimenTests {
 };
 
 inline void describe(Visitor& v, SpecimenTests& t) {
-  v.derived("test", std::string(t.paired ? "paired, by specimen" : "welch, by specimen"),
-            "Which one is the main test.");
+  v.derived("test", std::string(t.paired ? "paired, by specimen" : "welch, by specimen"), "Name of the main test.");
   if (!v.sets()) {
     TTest main = t.main();
     describe(v, main);
   }
-  v.derived("n_before", t.before.n, "Specimens.");
-  v.derived("n_after", t.after.n, "Specimens.");
-  v.derived("mean_before_mm", t.before.mean, "Mean of the specimens' mean errors.");
-  v.derived("mean_after_mm", t.after.mean, "Mean of the specimens' mean errors.");
-  describe_test(v, {"student", "With one variance."}, "student, by specimen", t.student);
-  describe_test(v, {"welch", "With a variance for each side."}, "welch, by specimen", t.welch);
+  v.derived("n_before", t.before.n, "Number of specimens before.");
+  v.derived("n_after", t.after.n, "Number of specimens after.");
+  v.derived("mean_before_mm", t.before.mean, "Mean of the specimens' mean errors before.");
+  v.derived("mean_after_mm", t.after.mean, "Mean of the specimens' mean errors after.");
+  describe_test(v, {"student", "Test with a common variance."}, "student, by specimen", t.student);
+  describe_test(v, {"welch", "Test with a variance for each side."}, "welch, by specimen", t.welch);
   std::optional<NamedTest> paired;
   if (t.paired) paired = NamedTest{"paired, by specimen", *t.paired};
-  v("paired", paired, "Absent where the specimens are no pairs.");
+  v("paired", paired, "Test of pairs; absent if the specimens are not pairs.");
   t.paired = paired ? std::optional(paired->test) : std::nullopt;
-  v("effect", t.effect, "Absent where it cannot be computed.");
-  v("fewest_specimens", t.fewest, "In each group, or pairs, with which this effect would show.");
+  v("effect", t.effect, "Effect size; absent if it cannot be computed.");
+  v("fewest_specimens", t.fewest, "Fewest specimens in each group, or pairs, with which this effect is detected.");
 }
 
 /// Result of compare: the errors of incisions before and after a change.

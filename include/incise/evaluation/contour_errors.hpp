@@ -15,8 +15,8 @@ struct ContourErrors {
 };
 inline void describe(Visitor& v, ContourErrors& e) {
   v("points", e.points, "The incision, resampled evenly.");
-  v("signed_distance_mm", e.signed_distance_mm, "To the tumour edge; negative inside it.");
-  v("signed_error_mm", e.signed_error_mm, "Positive: farther from the tumour than intended.");
+  v("signed_distance_mm", e.signed_distance_mm, "Distance to the tumour edge; negative inside it.");
+  v("signed_error_mm", e.signed_error_mm, "Signed error; positive: farther from the tumour than intended.");
 }
 
 /// Computes the signed errors of an incision contour against a tumour edge: e_i = ± min_j |p_i − segment_j| − target.

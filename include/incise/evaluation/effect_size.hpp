@@ -15,10 +15,10 @@ struct EffectSize {
 };
 
 inline void describe(Visitor& v, EffectSize& e) {
-  v("hedges_g", e.hedges_g, "Difference over standard deviation, without bias.");
-  v("cohens_d", e.cohens_d, "The same with the bias of few values.");
+  v("hedges_g", e.hedges_g, "Hedges' g: difference over standard deviation, corrected for bias.");
+  v("cohens_d", e.cohens_d, "Cohen's d: the same without the correction for bias.");
   std::optional<Interval> confidence = e.confidence;
-  describe_interval(v, {"confidence", "Interval of g."}, confidence);
+  describe_interval(v, {"confidence", "Confidence interval of Hedges' g."}, confidence);
   if (v.sets()) e.confidence = confidence.value_or(Interval{});
 }
 

@@ -39,20 +39,21 @@ struct EvaluationSettings {
   double end_tolerance_mm = 1.0;
 };
 inline void describe(Visitor& v, EvaluationSettings& s) {
-  v("contour", s.contour, "What was measured.");
-  v({"lateral_margin_mm", "Intended, from the tumour edge to the kerf's mid-line.", "mm"}, s.lateral_margin_mm,
+  v("contour", s.contour, "Line of the cut that is measured.");
+  v({"lateral_margin_mm", "Planned distance from the tumour edge to the kerf's mid-line.", "mm"}, s.lateral_margin_mm,
     kPositive);
-  v({"electrode_radius_mm", "Half the kerf's width.", "mm"}, s.electrode_radius_mm, kNotNegative);
+  v({"electrode_radius_mm", "Radius of the electrode: half the kerf's width.", "mm"}, s.electrode_radius_mm,
+    kNotNegative);
   v({"target_mm", "Intended distance of the measured contour; absent: 5.0 for a mid-line, 4.5 for an inner edge.",
      "mm"},
     s.target_mm, kPositive);
-  v({"close_margin_mm", "Clinical cut-off of the tissue left beside the tumour (paper III-A.1, [30]).", "mm"},
+  v({"close_margin_mm", "Clinical cut-off for the tissue left beside the tumour (paper III-A.1, [30]).", "mm"},
     s.close_margin_mm, kPositive);
   v.direction("approach", s.approach, "Direction in which the camera looks.");
   v({"step_mm", "Spacing of the points at which errors are taken.", "mm"}, s.step_mm, kPositive);
   v("twelve_o_clock", s.twelve_o_clock,
-    "12 o'clock of the clock face over the tumour; absent: up in the picture (view_along(approach).y).");
-  v({"end_tolerance_mm", "An open cut is complete if it ends within this of the intended ends.", "mm"},
+    "Direction of 12 o'clock on the clock face over the tumour; absent: up in the picture (view_along(approach).y).");
+  v({"end_tolerance_mm", "An open cut is complete if it ends within this distance of the intended ends.", "mm"},
     s.end_tolerance_mm, kNotNegative);
 }
 
@@ -70,8 +71,8 @@ struct CloseMargin {
   double fraction = 0.0;  ///< of all points, [0, 1]
 };
 inline void describe(Visitor& v, CloseMargin& m) {
-  v("points", m.points, "How many leave too little tissue.");
-  v("fraction", m.fraction, "Of all points.");
+  v("points", m.points, "Number of points that leave too little tissue.");
+  v("fraction", m.fraction, "Fraction of all points.");
 }
 
 /// Points in one of the zones of the paper's Fig. 6. Borders are signed errors of the measured contour: -4.5 and -2.3
@@ -82,9 +83,9 @@ struct ErrorZone {
   double fraction = 0.0;  ///< of all points, [0, 1]
 };
 inline void describe(Visitor& v, ErrorZone& z) {
-  v("at_or_below_mm", z.at_or_below_mm, "Upper border, which belongs to the zone.");
-  v("points", z.points, "How many.");
-  v("fraction", z.fraction, "Of all points.");
+  v("at_or_below_mm", z.at_or_below_mm, "Upper border of the zone, which belongs to it.");
+  v("points", z.points, "Number of points in the zone.");
+  v("fraction", z.fraction, "Fraction of all points.");
 }
 
 /// The measures of one incision (paper III-A.1, III-A.2; docs/models/measures.md). A measure that could not be taken is

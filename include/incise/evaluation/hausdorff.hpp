@@ -12,9 +12,9 @@ struct HausdorffDistance {
   [[nodiscard]] double symmetric_mm() const { return from_first_mm > from_second_mm ? from_first_mm : from_second_mm; }
 };
 inline void describe(Visitor& v, HausdorffDistance& d) {
-  v.derived("symmetric", d.symmetric_mm(), "The greater of the two.");
-  v({"from_incision", "Farthest that a point of the first curve lies from the second.", "mm"}, d.from_first_mm);
-  v({"from_ideal", "Farthest that a point of the second curve lies from the first.", "mm"}, d.from_second_mm);
+  v.derived("symmetric", d.symmetric_mm(), "Greater of the two distances.");
+  v({"from_incision", "Greatest distance of a point of the first curve from the second.", "mm"}, d.from_first_mm);
+  v({"from_ideal", "Greatest distance of a point of the second curve from the first.", "mm"}, d.from_second_mm);
 }
 
 /// Computes both Hausdorff distances, from corners and from points about `step_mm` apart to segments: at most step_mm/2

@@ -43,9 +43,8 @@ struct AuditSettings {
 inline void describe(Visitor& v, AuditSettings& s) {
   v("least", s.least, "Least possible value: 0 for absolute errors.");
   v("n_at_least", s.n_at_least,
-    "Where the table gives no n: how few values there may be. Few values may stray more, so this is what the benefit "
-    "of "
-    "the doubt costs.",
+    "Fewest values that a row may have if the table gives no n. Fewer values may spread more, so a lower number finds "
+    "fewer rows impossible.",
     {2.0, 1e9});
   v("grain", s.grain, "Values are whole multiples of this (1 for counts): the GRIM test; needs n.", kPositive);
 }
@@ -79,7 +78,7 @@ inline constexpr std::array<std::string_view, 14> kAuditRuleNames{
 inline void describe_group(Visitor& v, std::string& group) {
   std::optional<std::string> named;
   if (!group.empty()) named = group;
-  v("of", named, "Whose numbers; absent: the row's own.");
+  v("of", named, "Group of columns with these numbers; absent: the row's own columns.");
   if (v.sets()) group = named.value_or("");
 }
 
@@ -94,11 +93,11 @@ struct Finding {
 /// Returns one sentence for a person: rule, number, bound.
 [[nodiscard]] std::string to_text(const Finding& finding);
 inline void describe(Visitor& v, Finding& f) {
-  v("rule", f.rule, "That is broken.");
+  v("rule", f.rule, "Rule that is broken.");
   describe_group(v, f.group);
-  v("printed", f.printed, "The number that cannot be.");
-  v("bound", f.bound, "What it would have to keep to.");
-  v.derived("text", to_text(f), "The same as a sentence.");
+  v("printed", f.printed, "The impossible number.");
+  v("bound", f.bound, "Nearest possible value.");
+  v.derived("text", to_text(f), "The finding as a sentence.");
 }
 
 /// A rule that could not be checked, because the table does not print a number that it needs.
@@ -109,9 +108,9 @@ struct Unchecked {
 };
 
 inline void describe(Visitor& v, Unchecked& u) {
-  v("rule", u.rule, "That could not be checked.");
+  v("rule", u.rule, "Rule that could not be checked.");
   describe_group(v, u.group);
-  v("needs", u.needs, "What the table does not print.");
+  v("needs", u.needs, "Number that the table does not print.");
 }
 
 struct AuditedRow {
@@ -121,10 +120,10 @@ struct AuditedRow {
 };
 
 inline void describe(Visitor& v, AuditedRow& r) {
-  v("name", r.name, "Of the row.");
+  v("name", r.name, "Name of the row.");
   v.derived("possible", r.findings.empty(), "Whether nothing impossible was found.");
-  v("findings", r.findings, "What no set of numbers can do.");
-  v("not_checkable", r.not_checkable, "What \"possible\" does not cover.");
+  v("findings", r.findings, "Numbers that no data can produce.");
+  v("not_checkable", r.not_checkable, "Rules that could not be checked.");
 }
 
 struct Audit {
@@ -138,18 +137,18 @@ struct Audit {
 };
 
 inline void describe(Visitor& v, Audit& a) {
-  v("impossible_rows", a.impossible_rows, "How many no data can produce.");
-  v.derived("checked_rows", a.rows.size(), "How many there are.");
-  v("rows", a.rows, "As given.");
+  v("impossible_rows", a.impossible_rows, "Number of rows that no data can produce.");
+  v.derived("checked_rows", a.rows.size(), "Number of rows that were checked.");
+  v("rows", a.rows, "Rows in the order of the table.");
   const Field baseline{"score_baseline_mm",
                        "Baselines that explain the per cents of most rows; absent: no row has one."};
   if (!v.optional(baseline, a.baseline_mm.has_value())) return;
   BaselineRange range = a.baseline_mm.value_or(BaselineRange{});
   v.begin(baseline);
-  v({"low", "The least of them.", "mm"}, range.low_mm);
-  v({"high", "The greatest.", "mm"}, range.high_mm);
-  v("rows", a.rows_on_baseline, "That they explain.");
-  v("of", a.scored_rows, "Rows with a per cent above 0, mean and max.");
+  v({"low", "Least of these baselines.", "mm"}, range.low_mm);
+  v({"high", "Greatest of these baselines.", "mm"}, range.high_mm);
+  v("rows", a.rows_on_baseline, "Number of rows that they explain.");
+  v("of", a.scored_rows, "Number of rows with a per cent above 0, a mean and a max.");
   v.end();
   if (v.sets()) a.baseline_mm = range;
 }

@@ -14,10 +14,10 @@ struct Summary {
   double max = 0.0;
 };
 inline void describe(Visitor& v, Summary& s) {
-  v("mean", s.mean, "Mean.");
+  v("mean", s.mean, "Mean value.");
   v("sd", s.sd, "Sample standard deviation; 0 for a single number.", kNotNegative);
-  v("min", s.min, "Least.");
-  v("max", s.max, "Greatest.");
+  v("min", s.min, "Least value.");
+  v("max", s.max, "Greatest value.");
 }
 
 /// Computes mean, spread and range. @throws InvalidArgument without values, or naming the first that is not finite.

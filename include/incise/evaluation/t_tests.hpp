@@ -61,12 +61,12 @@ struct TTest {
 
 inline void describe(Visitor& v, TTest& t) {
   v("t", t.t, "Difference over its standard error; absent unless tested.");
-  v("df", t.df, "Degrees of freedom; absent where there are too few values.");
-  v("p", t.p, "Two-tailed; absent unless tested.");
-  v({"difference_mm", "Of the means, after minus before.", "mm"}, t.difference);
-  v({"standard_error_mm", "Of the difference.", "mm"}, t.standard_error);
-  describe_interval(v, {"confidence_mm", "Interval of the difference.", "mm"}, t.confidence);
-  v("verdict", t.verdict, "Whether the test could say anything.");
+  v("df", t.df, "Degrees of freedom; absent if there are too few values.");
+  v("p", t.p, "Two-tailed p; absent unless tested.");
+  v({"difference_mm", "Difference of the means, after minus before.", "mm"}, t.difference);
+  v({"standard_error_mm", "Standard error of the difference.", "mm"}, t.standard_error);
+  describe_interval(v, {"confidence_mm", "Confidence interval of the difference.", "mm"}, t.confidence);
+  v("verdict", t.verdict, "Whether the test could be made.");
 }
 
 /// Student's t-test of two samples with a common variance. TooFew unless n_before + n_after >= 3. Source:

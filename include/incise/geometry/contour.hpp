@@ -13,7 +13,7 @@ struct Contour {
   bool is_closed = true;
 };
 inline void describe(Visitor& v, Contour& c) {
-  v("points_mm", c.points, "In order; of a closed one the last joins the first.");
+  v("points_mm", c.points, "Points in order; on a closed contour, the last joins the first.");
   v("is_closed", c.is_closed, "Whether the last point joins the first.");
 }
 

@@ -21,9 +21,9 @@ struct DepthProfile {
   std::vector<double> depth_mm;      ///< N, >= 0: below the skin, along the approach; 0 where nothing is cut
 };
 inline void describe(Visitor& v, DepthProfile& p) {
-  v("course", p.course, "On the surface, evenly spaced.");
-  v("arclength_mm", p.arclength_mm, "From the course's first point.");
-  v("depth_mm", p.depth_mm, "Of the kerf below the skin, along the approach; 0: nothing is cut there.");
+  v("course", p.course, "Points of the course on the surface, evenly spaced.");
+  v("arclength_mm", p.arclength_mm, "Arc length from the course's first point.");
+  v("depth_mm", p.depth_mm, "Depth of the kerf below the skin, along the approach; 0: nothing is cut there.");
 }
 
 /// Computes the depth that a kerf reaches below the skin along a course over it. Each line of sight gives the depth of

@@ -18,10 +18,10 @@ struct Manifoldness {
   [[nodiscard]] bool operator==(const Manifoldness&) const = default;
 };
 inline void describe(Visitor& v, Manifoldness& m) {
-  v("triangles", m.triangles, "How many.");
-  v("open_edges", m.open_edges, "Edges of one triangle.");
-  v("nonmanifold_edges", m.nonmanifold_edges, "Edges of more than two triangles: sheets touch along them.");
-  v("pinched_vertices", m.pinched_vertices, "Vertices where sheets touch in this point alone.");
+  v("triangles", m.triangles, "Number of triangles.");
+  v("open_edges", m.open_edges, "Number of edges of one triangle only.");
+  v("nonmanifold_edges", m.nonmanifold_edges, "Number of edges of more than two triangles: sheets touch along them.");
+  v("pinched_vertices", m.pinched_vertices, "Number of vertices where sheets touch only at that point.");
 }
 
 /// Counts these places. @pre indices in range, no triangle with a corner twice.  O(n log n).

@@ -17,8 +17,8 @@ struct SplitTet {
 };
 inline void describe(Visitor& v, SplitTet& t) {
   v("whole", t.whole, "The tet of the whole mesh.");
-  v("corners", t.corners, "In the split mesh.");
-  v("share", t.share, "Of the whole tet's rest volume.", {0.0, 1.0});
+  v("corners", t.corners, "Corners in the split mesh.");
+  v("share", t.share, "Share of the whole tet's rest volume.", {0.0, 1.0});
 }
 
 /// The splits of a mesh along cuts that run through its tets (virtual nodes: Molino, Bao and Fedkiw 2004). A tet whose
@@ -31,7 +31,7 @@ struct MeshSplits {
   [[nodiscard]] bool operator==(const MeshSplits&) const = default;
 };
 inline void describe(Visitor& v, MeshSplits& s) {
-  v("vertices", s.vertices, "Of each copied vertex, the one that it came apart from.");
+  v("vertices", s.vertices, "For each copied vertex, the vertex that it was split from.");
   v("copies", s.copies, "The copied tets.");
   v("changed", s.changed, "Tets of the whole mesh with other corners or a smaller share, ascending.");
 }

@@ -95,19 +95,21 @@ struct CleaningSettings {
   Vec3 seen_along = -Vec3::UnitZ();
 };
 inline void describe(Visitor& v, CleaningSettings& s) {
-  v({"box", "What lies outside is dropped.", "mm"}, s.box);
-  v("planes", s.planes, "Cloud: flat things (table, holder) to take away with what lies beneath, largest first.",
+  v({"box", "Box of the points to keep; points outside it are dropped.", "mm"}, s.box);
+  v("planes", s.planes, "Cloud: flat objects (table, holder) to remove with what lies beneath, largest first.",
     {0.0, 20.0});
-  v({"plane_tolerance_mm", "Cloud: a point this near to a plane belongs to it.", "mm"}, s.plane_tolerance_mm,
+  v({"plane_tolerance_mm", "Cloud: a point within this distance of a plane belongs to it.", "mm"}, s.plane_tolerance_mm,
     kPositive);
-  v("plane_least_share", s.plane_least_share, "Of the points left; a smaller plane stays.", {0.0, 1.0, true});
-  v("drop_beneath_planes", s.drop_beneath_planes, "Also what lies behind a plane, seen along `seen_along`.");
-  v("outlier_neighbours", s.outlier_neighbours, "Cloud: neighbours that a point is judged by; 0 keeps outliers.",
+  v("plane_least_share", s.plane_least_share, "Least share of the remaining points for a plane to be removed.",
+    {0.0, 1.0, true});
+  v("drop_beneath_planes", s.drop_beneath_planes, "Whether to drop what lies behind a plane, seen along `seen_along`.");
+  v("outlier_neighbours", s.outlier_neighbours, "Cloud: neighbours used to find outliers; 0 keeps outliers.",
     {0.0, 200.0});
   v("outlier_deviations", s.outlier_deviations,
-    "Cloud: standard deviations above the mean distance beyond which a point goes.", {0.0, 100.0});
-  v({"voxel_mm", "Cloud: one point per cube of this size; 0: all.", "mm"}, s.voxel_mm, {0.0, 100.0});
-  v("normal_neighbours", s.normal_neighbours, "0: no normals; else at least 3.", kNotNegative);
+    "Cloud: standard deviations above the mean distance beyond which a point is removed.", {0.0, 100.0});
+  v({"voxel_mm", "Cloud: one point per cube of this size; 0: all points.", "mm"}, s.voxel_mm, {0.0, 100.0});
+  v("normal_neighbours", s.normal_neighbours, "Neighbours for a normal; 0: no normals, otherwise at least 3.",
+    kNotNegative);
   v.direction("seen_along", s.seen_along, "Direction of sight.");
 }
 

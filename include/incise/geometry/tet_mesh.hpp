@@ -20,7 +20,7 @@ struct DataArray {
 };
 inline void describe(Visitor& v, DataArray& a) {
   v("components", a.components, "Numbers for each item.", Range{1.0, 1e6});
-  v("values", a.values, "Item by item.");
+  v("values", a.values, "Values, item by item.");
 }
 
 using Tet = std::array<VertexId, 4>;
@@ -35,7 +35,7 @@ struct TetMesh {
 };
 inline void describe(Visitor& v, TetMesh& m) {
   v("vertices", m.vertices, "Positions.");
-  v("tets", m.tets, "Four vertices each.");
+  v("tets", m.tets, "Tets, four vertices each.");
   v("point_data", m.point_data, "Numbers for each vertex.");
   v("cell_data", m.cell_data, "Numbers for each tet.");
 }
@@ -48,7 +48,7 @@ struct TriMesh {
 };
 inline void describe(Visitor& v, TriMesh& m) {
   v("vertices", m.vertices, "Positions.");
-  v("triangles", m.triangles, "Three vertices each, counter-clockwise seen from outside.");
+  v("triangles", m.triangles, "Triangles, three vertices each, counter-clockwise seen from outside.");
   v("point_data", m.point_data, "Numbers for each vertex.");
 }
 

@@ -37,10 +37,10 @@ struct Waypoint {
   double speed_mm_s = 7.0;          ///< of the tip from this waypoint to the next
 };
 inline void describe(Visitor& v, Waypoint& w) {
-  v("position_mm", w.position_mm, "On the tissue's surface, in the path's frame.");
-  v("axis", w.axis, "Unit; the direction in which the tool points into the tissue.");
-  v({"depth_mm", "Of the tool's tip below position_mm, along axis.", "mm"}, w.depth_mm, kNotNegative);
-  v({"speed_mm_s", "Of the tip from this waypoint to the next.", "mm/s"}, w.speed_mm_s, kPositive);
+  v("position_mm", w.position_mm, "Entry point on the tissue's surface, in the path's frame.");
+  v("axis", w.axis, "Unit direction in which the tool points into the tissue.");
+  v({"depth_mm", "Depth of the tool's tip below position_mm, along axis.", "mm"}, w.depth_mm, kNotNegative);
+  v({"speed_mm_s", "Speed of the tip from this waypoint to the next.", "mm/s"}, w.speed_mm_s, kPositive);
 }
 
 /// The entry points of a tool along its way over the surface, with depth and axis at each: the content of `path.json`.
@@ -56,14 +56,14 @@ struct ToolPath {
   bool is_virtual = false;       ///< the specimen is a synthetic body, not a patient's
 };
 inline void describe(Visitor& v, ToolPath& p) {
-  v("frame", p.frame, "Whose coordinates the path has.");
-  v("kind", p.kind, "What the tool does along it.");
+  v("frame", p.frame, "Frame of the path's coordinates.");
+  v("kind", p.kind, "What the tool does along the path.");
   v("is_closed", p.is_closed, "Whether the last waypoint joins the first.");
-  v("waypoints", p.waypoints, "In order.");
-  v("tumor_edge", p.tumor_edge, "Same frame; may be empty for an open cut.");
-  v("T_robot_sim", p.T_robot_sim, "p_robot = T_robot_sim * p_sim, mm, once known.");
-  v("source_sha256", p.source_sha256, "Of what it was made from; empty: unknown.");
-  v("specimen_id", p.specimen_id, "Of the specimen that it was planned on; empty: not stated.");
+  v("waypoints", p.waypoints, "Waypoints in order.");
+  v("tumor_edge", p.tumor_edge, "Tumour edge in the same frame; may be empty for an open cut.");
+  v("T_robot_sim", p.T_robot_sim, "Simulation to robot, once known: p_robot = T_robot_sim * p_sim, mm.");
+  v("source_sha256", p.source_sha256, "SHA-256 of the path's source; empty: unknown.");
+  v("specimen_id", p.specimen_id, "Id of the specimen that the path was planned on; empty: not stated.");
   v("is_virtual", p.is_virtual, "Whether the specimen is a synthetic body.");
 }
 

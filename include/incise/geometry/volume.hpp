@@ -45,8 +45,8 @@ struct VolumeGrid {
   }
 };
 inline void describe(Visitor& v, VolumeGrid& g) {
-  v("size", g.size, "Voxels along i, j, k.");
-  v("spacing_mm", g.spacing_mm, "Along i, j, k.");
+  v("size", g.size, "Number of voxels along i, j, k.");
+  v("spacing_mm", g.spacing_mm, "Spacing of the voxels along i, j, k.");
   v("origin_mm", g.origin_mm, "Centre of voxel (0, 0, 0).");
   v("direction", g.direction, "Columns: the unit i, j, k axes in world coordinates.");
 }
@@ -62,7 +62,7 @@ struct Volume {
 };
 template <class Value>
 void describe(Visitor& v, Volume<Value>& volume) {
-  v("grid", volume.grid, "Where the voxels lie.");
+  v("grid", volume.grid, "Grid of the voxels.");
   v("voxels", volume.voxels, "Values, i fastest.");
 }
 

@@ -35,23 +35,23 @@ struct PhantomSettings {
   int tumor_points = 120;
 };
 inline void describe(Visitor& v, PhantomSettings& s) {
-  v("seed", s.seed, "Of shape, texture and noise.");
-  v("shape", s.shape, "Mean size, and how much one specimen differs from the next.");
-  v({"spacing_mm", "Of the voxels.", "mm"}, s.spacing_mm, {0.3, 3.0});
-  v({"tissue_hu", "Muscle.", "HU"}, s.tissue_hu, {0.0, 120.0});
+  v("seed", s.seed, "Seed of shape, texture and noise.");
+  v("shape", s.shape, "Mean size, and how much specimens differ from each other.");
+  v({"spacing_mm", "Spacing of the voxels.", "mm"}, s.spacing_mm, {0.3, 3.0});
+  v({"tissue_hu", "Value of muscle.", "HU"}, s.tissue_hu, {0.0, 120.0});
   v({"texture_hu", "Standard deviation of the slow change within the muscle.", "HU"}, s.texture_hu, {0.0, 30.0});
   v({"noise_hu", "Standard deviation of the scanner's noise.", "HU"}, s.noise_hu, {0.0, 60.0});
   v({"blur_mm", "Standard deviation of the scanner's point spread.", "mm"}, s.blur_mm, {0.0, 2.0});
-  v({"holder_hu", "The board beneath: low-density polyethylene.", "HU"}, s.holder_hu, {-1000.0, 1500.0});
-  v({"holder_thickness_mm", "Of the board; 0: none.", "mm"}, s.holder_thickness_mm, {0.0, 30.0});
+  v({"holder_hu", "Value of the board beneath: low-density polyethylene.", "HU"}, s.holder_hu, {-1000.0, 1500.0});
+  v({"holder_thickness_mm", "Thickness of the board; 0: no board.", "mm"}, s.holder_thickness_mm, {0.0, 30.0});
   v({"field_of_view_mm", "Above 0: square slices of this size, padding outside the circle; 0: a tight grid.", "mm"},
     s.field_of_view_mm, {0.0, 600.0});
-  v({"tumor_diameter_mm", "Mean, seen from above.", "mm"}, s.tumor_diameter_mm, {8.0, 24.0});
+  v({"tumor_diameter_mm", "Mean diameter of the tumour, seen from above.", "mm"}, s.tumor_diameter_mm, {8.0, 24.0});
   v("tumor_irregularity", s.tumor_irregularity, "Sum of the amplitudes of harmonics 2 to 6 over the radius.",
     {0.0, 0.25});
-  v({"tumor_depth_mm", "Of the bowl beneath the edge.", "mm"}, s.tumor_depth_mm, {1.0, 8.0});
-  v("tumor_position", s.tumor_position, "Centre, as a share of the length from the tip.", {0.4, 0.6});
-  v("tumor_points", s.tumor_points, "Of the edge.", {24.0, 1000.0});
+  v({"tumor_depth_mm", "Depth of the tumour's bowl beneath its edge.", "mm"}, s.tumor_depth_mm, {1.0, 8.0});
+  v("tumor_position", s.tumor_position, "Centre of the tumour, as a share of the length from the tip.", {0.4, 0.6});
+  v("tumor_points", s.tumor_points, "Number of points of the tumour edge.", {24.0, 1000.0});
 }
 
 /// Returns every violation; empty if the settings are valid.

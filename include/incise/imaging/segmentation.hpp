@@ -25,9 +25,9 @@ struct TissueEdit {
   Points path_mm;  ///< joined by straight lines; one point: a ball
 };
 inline void describe(Visitor& v, TissueEdit& e) {
-  v("tissue", e.is_tissue, "Whether the stroke makes tissue; else it takes tissue away.");
-  v({"radius_mm", "Of the brush.", "mm"}, e.radius_mm, {0.1, 50.0});
-  v({"path_mm", "Points (LPS) of the stroke's middle.", "mm"}, e.path_mm);
+  v("tissue", e.is_tissue, "Whether the stroke adds tissue; otherwise it removes tissue.");
+  v({"radius_mm", "Radius of the brush.", "mm"}, e.radius_mm, {0.1, 50.0});
+  v({"path_mm", "Points (LPS) along the middle of the stroke.", "mm"}, e.path_mm);
 }
 
 /// Which part of a CT, or of a label volume, is the specimen. Lengths in mm, LPS world coordinates. Labels do not use
@@ -69,8 +69,8 @@ struct MadeVoxel {
   std::int32_t side = 0;   ///< the artificial side, along the grid: 0 to 5 are -i, +i, -j, +j, -k, +k
 };
 inline void describe(Visitor& v, MadeVoxel& c) {
-  v("voxel", c.voxel, "Its place in the labels' array.");
-  v("side", c.side, "Of the voxel that was made: 0 to 5 are -i, +i, -j, +j, -k, +k.");
+  v("voxel", c.voxel, "Place of the voxel in the labels' array.");
+  v("side", c.side, "Artificial side of the voxel: 0 to 5 are -i, +i, -j, +j, -k, +k.");
 }
 
 /// The specimen found in a CT. Both volumes share one grid, the body's box with a margin of air, which may extend
@@ -95,22 +95,22 @@ struct Segmentation {
   [[nodiscard]] int cut_faces() const;  ///< number of RegionFaces that cut through tissue
 };
 inline void describe(Visitor& v, Segmentation& s) {
-  v.bulk("labels", s.labels, "1: tissue.");
-  v.bulk("occupancy", s.occupancy, "Share of each voxel that is tissue, smooth.");
-  v("voxels", s.voxels, "That are tissue.");
-  v("volume_mm3", s.volume_mm3, "Of these voxels.");
-  v("occupancy_volume_mm3", s.occupancy_volume_mm3, "Inside the 0.5 iso-surface of the occupancy.");
-  v("tissue_hu", s.tissue_hu,
-    "Median over the voxels that are tissue and lie in the window; absent: the tissue was given as labels.");
-  v("components", s.components, "Separate pieces in the window, before one was chosen.");
-  v("holes_filled", s.holes_filled, "Cavities.");
-  v("hole_voxels", s.hole_voxels, "Voxels of the cavities.");
-  v("cut_voxels", s.cut_voxels, "Voxels of the body at each face of the region, where tissue goes on beyond it.");
-  v.bulk("cut", s.cut, "Where the label begins beneath these voxels.");
-  v.bulk("painted", s.painted, "Where the label begins beneath a side that the edits made.");
-  v.derived("cut_faces", s.cut_faces(), "How many faces of the region cut through tissue.");
-  v("smoothing_mm", s.smoothing_mm, "Length that was taken.");
-  v("verdict", s.verdict, "On this tissue.");
+  v.bulk("labels", s.labels, "Labels; 1: tissue.");
+  v.bulk("occupancy", s.occupancy, "Fraction of each voxel that is tissue, smoothed.");
+  v("voxels", s.voxels, "Number of tissue voxels.");
+  v("volume_mm3", s.volume_mm3, "Volume of the tissue voxels.");
+  v("occupancy_volume_mm3", s.occupancy_volume_mm3, "Volume inside the 0.5 iso-surface of the occupancy.");
+  v("tissue_hu", s.tissue_hu, "Median over the tissue voxels in the window; absent: the tissue was given as labels.");
+  v("components", s.components, "Number of separate pieces in the window, before one was chosen.");
+  v("holes_filled", s.holes_filled, "Number of cavities that were filled.");
+  v("hole_voxels", s.hole_voxels, "Number of voxels in these cavities.");
+  v("cut_voxels", s.cut_voxels,
+    "Number of body voxels at each face of the region where the tissue continues beyond the face.");
+  v.bulk("cut", s.cut, "Labelled voxels at these cuts.");
+  v.bulk("painted", s.painted, "Labelled voxels at a side that the edits made.");
+  v.derived("cut_faces", s.cut_faces(), "Number of faces of the region that cut through tissue.");
+  v("smoothing_mm", s.smoothing_mm, "Smoothing length that was used.");
+  v("verdict", s.verdict, "Verdict on this tissue.");
 }
 
 /// Returns, for each value of a label volume, whether it is tissue: `label_values` or, if absent, every value but 0.

@@ -23,10 +23,10 @@ struct TongueShapeSettings {
   double bump_mm = 1.2;
 };
 inline void describe(Visitor& v, TongueShapeSettings& s) {
-  v({"length_mm", "Tip to root (y).", "mm"}, s.length_mm, {80.0, 160.0});
-  v({"width_mm", "Left to right (x).", "mm"}, s.width_mm, {46.0, 80.0});
-  v({"height_mm", "Platform to the top of the back (z).", "mm"}, s.height_mm, {30.0, 50.0});
-  v("variation", s.variation, "Greatest relative change of each of the three.", {0.0, 0.08});
+  v({"length_mm", "Mean length, tip to root (y).", "mm"}, s.length_mm, {80.0, 160.0});
+  v({"width_mm", "Mean width, left to right (x).", "mm"}, s.width_mm, {46.0, 80.0});
+  v({"height_mm", "Mean height, platform to the top of the back (z).", "mm"}, s.height_mm, {30.0, 50.0});
+  v("variation", s.variation, "Greatest relative change of length, width and height.", {0.0, 0.08});
   v({"bend_mm", "Greatest sideways bow of the mid-line.", "mm"}, s.bend_mm, {0.0, 5.0});
   v("asymmetry", s.asymmetry, "Greatest relative difference of a half width from the mean.", {0.0, 0.1});
   v({"bump_mm", "Greatest height of the low-frequency bumps on the back.", "mm"}, s.bump_mm, {0.0, 2.0});

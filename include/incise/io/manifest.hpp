@@ -19,8 +19,8 @@ struct ManifestInput {
   std::string sha256;
 };
 inline void describe(Visitor& v, ManifestInput& i) {
-  v("path", i.path, "As it was given.");
-  v("sha256", i.sha256, "Of its contents.");
+  v("path", i.path, "Path of the input, as given.");
+  v("sha256", i.sha256, "SHA-256 of the input's contents.");
 }
 
 /// Content of `manifest.json` in an output folder: everything needed to repeat the run.

@@ -57,9 +57,9 @@ struct CtReadSettings {
 };
 
 inline void describe(Visitor& v, CtReadSettings& s) {
-  v("series_uid", s.series_uid, "DICOM: which series to read, where a folder holds several.");
+  v("series_uid", s.series_uid, "DICOM: which series to read if the folder contains several.");
   v("irregular_slices", s.irregular, "What to do with a tilted or unevenly spaced series.");
-  v("missing_slices", s.missing, "What to do with holes in a series.");
+  v("missing_slices", s.missing, "What to do with missing slices in a series.");
   v({"spacing_mm", "PNG slices only: column, row and slice spacing.", "mm"}, s.spacing_mm, kPositive);
   std::optional<std::array<double, 2>> hu;
   if (s.hu) hu = {s.hu->slope, s.hu->intercept};

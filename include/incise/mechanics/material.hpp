@@ -76,16 +76,16 @@ inline void describe(Visitor& v, Material& m) {
   v("poissons_ratio", m.poissons_ratio, "Poisson's ratio.", kPoissonsRatioLimits);
   v("stiffening", m.stiffening,
     "How the tissue between the fibres stiffens as it changes its shape: c20/c10 of Yeoh's law, 0.469 in published "
-    "tongues; 0: it does not. For model stable_neo_hookean.",
+    "tongues; 0: not at all. Only with model stable_neo_hookean.",
     kStiffeningLimits);
   v({"density_kg_m3", "Density.", "kg/m3"}, m.density_kg_m3, {0.0, kMostDensityKgM3, true});
   v({"fibre_modulus_kpa", "Stiffness added along the fibres; 0: none.", "kPa"}, m.fibre_modulus_kpa,
     {0.0, kYoungsModulusLimits.most});
   v("fibre_stiffening", m.fibre_stiffening,
-    "How fibres stiffen as they are stretched: s in E_f/(2s) (exp(s e^2) - 1), with the strain e; 0: they do not.",
+    "How fibres stiffen as they are stretched: s in E_f/(2s) (exp(s e^2) - 1), with the strain e; 0: not at all.",
     kFibreStiffeningLimits);
   v.direction("fibre_direction", m.fibre_direction,
-              "Of the fibres at rest, where neither the mesh nor fibre_field gives one.");
+              "Direction of the fibres at rest, where neither the mesh nor fibre_field gives one.");
   v("prony", m.prony,
     "Branches that relax with time, during the cut; the stretch is their long-time limit. Absent: none.");
   v({"kelvin_voigt_time_s", "Shear viscosity over long-time shear modulus, during the cut; 0: none.", "s"},

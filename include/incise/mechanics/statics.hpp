@@ -41,22 +41,22 @@ struct StaticResult {
 [[nodiscard]] std::string explain_stretch(const StaticResult& stretched);
 inline void describe(Visitor& v, StaticResult& r) {
   v("outcome", r.outcome, "How the search for equilibrium ended.");
-  v.derived("converged", r.outcome == Outcome::Success, "Whether it is a success.");
-  v.derived("note", explain_stretch(r), "Why it is of no use and what may help; empty when it is a success.");
-  v.bulk("state", r.state, "The tissue then.");
-  v("iterations", r.iterations, "Newton steps.");
-  v("load_steps", r.load_steps, "Steps in which the load was applied.");
-  v("linear_iterations", r.linear_iterations, "Of conjugate gradients.");
-  v.bulk("relative_residual", r.relative_residual, "Last one measured; not a number: none was.");
+  v.derived("converged", r.outcome == Outcome::Success, "Whether the stretch succeeded.");
+  v.derived("note", explain_stretch(r), "Why the stretch failed and what may help; empty if it succeeded.");
+  v.bulk("state", r.state, "The tissue at the end.");
+  v("iterations", r.iterations, "Number of Newton steps.");
+  v("load_steps", r.load_steps, "Number of steps in which the load was applied.");
+  v("linear_iterations", r.linear_iterations, "Number of iterations of conjugate gradients.");
+  v.bulk("relative_residual", r.relative_residual, "Last relative residual measured; not a number: none was.");
   v.derived("relative_residual", std::isfinite(r.relative_residual) ? std::optional(r.relative_residual) : std::nullopt,
-            "Last one measured.");
-  v.bulk("residual_history", r.residual_history, "One for each Newton step.");
+            "Last relative residual measured.");
+  v.bulk("residual_history", r.residual_history, "Relative residuals, one for each Newton step.");
   v("reaction_mn", r.reactions_mn, "Force of each constraint on the tissue.");
-  v("max_displacement_mm", r.max_displacement_mm, "Farthest that a vertex moved.");
-  v("penetration_mm", r.penetration_mm, "Deepest vertex behind a support.");
-  v("inverted_tets", r.inverted_tets, "How many.");
-  v("wall_s", r.wall_s, "Time that it took.");
-  v("solver", r.solver, "What was chosen and why.");
+  v("max_displacement_mm", r.max_displacement_mm, "Greatest displacement of a vertex.");
+  v("penetration_mm", r.penetration_mm, "Depth of the deepest vertex behind a support.");
+  v("inverted_tets", r.inverted_tets, "Number of inverted tets.");
+  v("wall_s", r.wall_s, "Time that the search took.");
+  v("solver", r.solver, "The solver that was chosen, and why.");
 }
 
 /// Finds static equilibrium by Newton's method with a line search on residual and energy, from `start` (null: rest).

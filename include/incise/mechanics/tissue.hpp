@@ -91,7 +91,7 @@ struct ViscousMemory {
   [[nodiscard]] bool operator==(const ViscousMemory&) const = default;
 };
 inline void describe(Visitor& v, ViscousMemory& m) {
-  v("strains", m.strains, "Of each tet at the end of the last step.");
+  v("strains", m.strains, "Strain of each tet at the end of the last step.");
   v("branches", m.branches, "Strain of each branch's spring, tet by tet.");
 }
 
@@ -104,11 +104,11 @@ struct TissueState {
   ViscousMemory memory;               ///< of viscous tissue; updated by end_viscous_step
 };
 inline void describe(Visitor& v, TissueState& s) {
-  v("positions", s.positions, "Of the vertices.");
-  v("rotations", s.rotations, "Of the tets: where the polar decomposition starts.");
-  v("is_live", s.is_live, "Of each tet: 1 until it is carved.");
-  v("fill", s.fill, "Of each live tet: the share of its stiffness that is left; empty: 1.");
-  v("memory", s.memory, "Of viscous tissue.");
+  v("positions", s.positions, "Positions of the vertices.");
+  v("rotations", s.rotations, "Rotations of the tets, from which the polar decomposition starts.");
+  v("is_live", s.is_live, "For each tet: 1 until it is carved.");
+  v("fill", s.fill, "Remaining share of the stiffness of each live tet; empty: 1.");
+  v("memory", s.memory, "Memory of viscous tissue.");
 }
 /// Returns the state at rest: every tet live, all rotations the identity.
 [[nodiscard]] TissueState rest_state(const TissueModel& model);

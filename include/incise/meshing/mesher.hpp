@@ -43,8 +43,8 @@ struct MeshingPhase {
   double wall_s = 0.0;
 };
 inline void describe(Visitor& v, MeshingPhase& p) {
-  v("name", p.name, "Of the phase.");
-  v("wall_s", p.wall_s, "Time that it took.");
+  v("name", p.name, "Name of the phase.");
+  v("wall_s", p.wall_s, "Time that the phase took.");
 }
 
 /// A mesh, its quality and how it was made.
@@ -72,22 +72,23 @@ struct [[nodiscard]] MeshingResult {
   double wall_s = 0.0;               ///< total time
 };
 inline void describe(Visitor& v, MeshingResult& m) {
-  v.bulk("mesh", m.mesh, "One component, positively oriented.");
+  v.bulk("mesh", m.mesh, "The mesh: one component, positively oriented.");
   describe(v, m.quality);
   v("meets_quality", m.meets_quality, "Whether the smallest dihedral angle is large enough.");
   v("meets_volume", m.meets_volume, "Whether the volume is near the label's.");
-  v("meets_target", m.meets_target, "Whether the count is near the one aimed for.");
-  v("label_volume_mm3", m.label_volume_mm3, "Of the body that was meshed.");
-  v("relative_volume_error", m.relative_volume_error, "Mesh less label, over label.");
+  v("meets_target", m.meets_target, "Whether the number of tets is near the target.");
+  v("label_volume_mm3", m.label_volume_mm3, "Volume of the body that was meshed.");
+  v("relative_volume_error", m.relative_volume_error,
+    "Volume of the mesh minus that of the label, over that of the label.");
   v("iso", m.iso, "Occupancy on the mesh's surface.");
   v("fine_mm", m.fine_mm, "Edge length requested near the cut.");
   v("coarse_mm", m.coarse_mm, "Edge length requested far from it.");
-  v("predicted_tets", m.predicted_tets, "Before the first refinement.");
-  v("refinements", m.refinements, "Tried to meet count and volume.");
-  v("improvements", m.improvements, "Tried to meet the angle.");
-  v("dropped_bodies", m.dropped_bodies, "Smaller components of the occupancy, left out.");
-  v("dropped_volume_mm3", m.dropped_volume_mm3, "Their volume.");
-  v("dropped_tets", m.dropped_tets, "Tets without a face in common with the rest, left out.");
+  v("predicted_tets", m.predicted_tets, "Number of tets predicted before the first refinement.");
+  v("refinements", m.refinements, "Number of refinements tried to meet count and volume.");
+  v("improvements", m.improvements, "Number of improvements tried to meet the angle.");
+  v("dropped_bodies", m.dropped_bodies, "Number of smaller components of the occupancy that were left out.");
+  v("dropped_volume_mm3", m.dropped_volume_mm3, "Volume that was left out.");
+  v("dropped_tets", m.dropped_tets, "Number of tets left out because no face joins them to the rest.");
   v("phases", m.phases, "Time by phase.");
   v("wall_s", m.wall_s, "Time that meshing took.");
 }

@@ -17,10 +17,10 @@ struct EdgeStatistics {
   double max_mm = 0.0;
 };
 inline void describe(Visitor& v, EdgeStatistics& e) {
-  v("count", e.count, "How many.");
-  v({"min", "Shortest.", "mm"}, e.min_mm);
+  v("count", e.count, "Number of edges.");
+  v({"min", "Shortest edge.", "mm"}, e.min_mm);
   v({"mean", "Mean length.", "mm"}, e.mean_mm);
-  v({"max", "Longest.", "mm"}, e.max_mm);
+  v({"max", "Longest edge.", "mm"}, e.max_mm);
 }
 
 /// Size and quality of a mesh. A dihedral angle is the angle between two faces of a tet: 70.5 degrees in a regular tet,
@@ -42,18 +42,18 @@ struct MeshQuality {
   EdgeStatistics edges;
 };
 inline void describe(Visitor& v, MeshQuality& q) {
-  v("tets", q.tets, "How many.");
-  v("vertices", q.vertices, "How many.");
-  v("volume_mm3", q.volume_mm3, "Of all tets.");
+  v("tets", q.tets, "Number of tets.");
+  v("vertices", q.vertices, "Number of vertices.");
+  v("volume_mm3", q.volume_mm3, "Volume of all tets.");
   v("min_dihedral_deg", q.min_dihedral_deg, "Smallest angle between two faces of a tet.");
   v("max_dihedral_deg", q.max_dihedral_deg, "Greatest such angle.");
-  v.begin({"dihedral_histogram", "Angles in bins."});
-  v.derived("bin_width_deg", MeshQuality::kBinWidthDeg, "Of each bin.");
-  v("counts", q.dihedral_histogram, "Six angles of each tet.");
+  v.begin({"dihedral_histogram", "Histogram of the dihedral angles."});
+  v.derived("bin_width_deg", MeshQuality::kBinWidthDeg, "Width of each bin.");
+  v("counts", q.dihedral_histogram, "Number of angles in each bin, six for each tet.");
   v.end();
-  v("min_radius_ratio", q.min_radius_ratio, "Worst ratio of the radii of inscribed and circumscribed sphere, times 3.");
-  v("mean_radius_ratio", q.mean_radius_ratio, "Its mean.");
-  v("smallest_tet_mm3", q.smallest_tet_mm3, "Signed: negative when a tet is inverted.");
+  v("min_radius_ratio", q.min_radius_ratio, "Least ratio of the radii of inscribed and circumscribed sphere, times 3.");
+  v("mean_radius_ratio", q.mean_radius_ratio, "Mean of that ratio.");
+  v("smallest_tet_mm3", q.smallest_tet_mm3, "Volume of the smallest tet; negative if it is inverted.");
   v("edge_mm", q.edges, "Lengths of the edges.");
 }
 

@@ -24,11 +24,11 @@ inline void describe(Visitor& v, SizingSettings& s) {
   v({"fine_mm", "Edge length inside the band around the cut, at most coarse_mm.", "mm"}, s.fine_mm, kPositive);
   v({"coarse_mm", "Longest edge length.", "mm"}, s.coarse_mm, kPositive);
   v("growth", s.growth, "Edge length gained per distance from the band, mm per mm.", kPositive);
-  v({"band_inside_mm", "Band towards the inside of a closed path: the tissue is dragged that way.", "mm"},
+  v({"band_inside_mm", "Width of the band on the inside of a closed path, the side to which tissue is dragged.", "mm"},
     s.band_inside_mm, kNotNegative);
-  v({"band_outside_mm", "Band away from it; an open cut has the larger width on both sides.", "mm"}, s.band_outside_mm,
-    kNotNegative);
-  v({"band_below_mm", "Band below the tip of the tool.", "mm"}, s.band_below_mm, kNotNegative);
+  v({"band_outside_mm", "Width of the band on the outside; an open cut has the larger width on both sides.", "mm"},
+    s.band_outside_mm, kNotNegative);
+  v({"band_below_mm", "Depth of the band below the tip of the tool.", "mm"}, s.band_below_mm, kNotNegative);
 }
 
 /// Returns the default settings for a body with this longest side, mm. From 40 mm on they are the defaults; for a

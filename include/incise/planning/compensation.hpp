@@ -25,11 +25,12 @@ inline void describe(Visitor& v, CompensationSettings& s) {
     kPositive);
   v("relaxation", s.relaxation, "Share of the measured error that is corrected; the paper: all of it.",
     {0.0, 1.0, true});
-  v("smoothing_passes", s.smoothing_passes, "Of [1 2 1]/4 over the waypoints' errors; the paper: none.", kNotNegative);
-  v({"close_margin_mm", "No waypoint is moved to where less tissue than this is left beside the edge.", "mm"},
+  v("smoothing_passes", s.smoothing_passes,
+    "Number of passes that smooth the waypoints' errors with weights [1 2 1]/4; the paper: none.", kNotNegative);
+  v({"close_margin_mm", "No waypoint moves to where less tissue than this remains beside the tumour edge.", "mm"},
     s.close_margin_mm, kPositive);
-  v({"electrode_radius_mm", "Of the tool.", "mm"}, s.electrode_radius_mm, kNotNegative);
-  v.direction("approach", s.approach, "Into the tissue.");
+  v({"electrode_radius_mm", "Radius of the tool.", "mm"}, s.electrode_radius_mm, kNotNegative);
+  v.direction("approach", s.approach, "Direction into the tissue.");
   v("tool_axis", s.axis_mode, "How the tool is held at a waypoint.");
   v({"step_mm", "Spacing of the points at which the measured contour's error is taken.", "mm"}, s.step_mm, kPositive);
   v({"rim_clearance_mm", "The corrected path keeps this far from the surface's rim.", "mm"}, s.rim_clearance_mm,
@@ -51,14 +52,14 @@ struct Compensation {
 };
 inline void describe(Visitor& v, Compensation& c) {
   v.bulk("path", c.path, "The corrected path.");
-  v.derived("waypoints", c.path.waypoints.size(), "How many.");
+  v.derived("waypoints", c.path.waypoints.size(), "Number of waypoints.");
   v("error_mm", c.error_mm, "Signed error measured at each waypoint.");
-  v("move_mm", c.move_mm, "Of each waypoint; positive: away from the tumour.");
-  v.bulk("is_limited", c.is_limited, "Of each waypoint: whether its move was cut short.");
-  v.bulk("is_interpolated", c.is_interpolated, "Of each waypoint: whether nothing was measured there.");
-  v("limited_waypoints", c.limited_waypoints, "How many.");
-  v("interpolated_waypoints", c.interpolated_waypoints, "How many.");
-  v("max_move_mm", c.max_move_mm, "Greatest move.");
+  v("move_mm", c.move_mm, "Move of each waypoint; positive: away from the tumour.");
+  v.bulk("is_limited", c.is_limited, "For each waypoint: whether its move was cut short.");
+  v.bulk("is_interpolated", c.is_interpolated, "For each waypoint: whether nothing was measured there.");
+  v("limited_waypoints", c.limited_waypoints, "Number of waypoints whose move was cut short.");
+  v("interpolated_waypoints", c.interpolated_waypoints, "Number of waypoints where nothing was measured.");
+  v("max_move_mm", c.max_move_mm, "Greatest move of a waypoint.");
 }
 
 /// Sets the fields that follow from the lists: limited_waypoints, interpolated_waypoints and max_move_mm.

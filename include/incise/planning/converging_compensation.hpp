@@ -31,12 +31,14 @@ struct PathErrors {
 };
 inline void describe(Visitor& v, PathErrors& e) {
   v("places_mm", e.places, "Where the measured contour lies, evenly spaced.");
-  v("signed_error_mm", e.signed_error_mm, "There; positive: farther from the tumour than intended.");
+  v("signed_error_mm", e.signed_error_mm,
+    "Signed error at each of these places; positive: farther from the tumour than intended.");
   v("lag_mm", e.lag_mm, "How far ahead the tissue was dragged when it was cut.");
   v("is_success", e.is_success, "Whether the cut succeeded.");
-  v("shortfall_mm", e.shortfall_mm, "What the kerf lacks of the depth that is accepted without a caution, mean.");
+  v("shortfall_mm", e.shortfall_mm,
+    "Depth that the kerf lacks, against the least depth accepted without a caution; mean.");
   v("open_layers", e.open_layers, "Planned layers in which the ring stayed open.");
-  v("verdict", e.verdict, "Of what another course may mend.");
+  v("verdict", e.verdict, "Verdict on what another path may mend.");
 }
 
 /// Cuts along a path, in simulation or in a test's stand-in for tissue, and measures the cut; nullopt: no contour to
@@ -55,12 +57,14 @@ struct SafeRegion {
 inline void describe(Visitor& v, SafeRegion& r) {
   v({"close_margin_mm", "A waypoint leaves at least this much tissue beside the tumour edge.", "mm"}, r.close_margin_mm,
     kPositive);
-  v({"electrode_radius_mm", "Of the tool.", "mm"}, r.electrode_radius_mm, kNotNegative);
+  v({"electrode_radius_mm", "Radius of the tool.", "mm"}, r.electrode_radius_mm, kNotNegative);
   v({"max_offset_mm",
-     "Farthest from the place on the intended path; a program whose course is 4 mm off is not exported.", "mm"},
+     "Greatest distance of a waypoint from its intended place; a program whose course is 4 mm off is not exported.",
+     "mm"},
     r.max_offset_mm, kPositive);
-  v({"rim_clearance_mm", "From the surface's rim.", "mm"}, r.rim_clearance_mm, kNotNegative);
-  v.direction("approach", r.approach, "Into the tissue.");
+  v({"rim_clearance_mm", "Least distance of a waypoint from the surface's rim.", "mm"}, r.rim_clearance_mm,
+    kNotNegative);
+  v.direction("approach", r.approach, "Direction into the tissue.");
   v("tool_axis", r.axis_mode, "How the tool is held at a waypoint.");
 }
 
@@ -87,42 +91,46 @@ struct ConvergenceSettings {
 inline void describe_blur(Visitor& v, double& smoothing_mm, double& shift_lags, double& spread_lags) {
   v({"smoothing_mm", "Standard deviation of the Gaussian by which errors are averaged along the path.", "mm"},
     smoothing_mm, kPositive);
-  v("shift_lags", shift_lags, "How much farther on a place answers to the tool's path, in shares of the lag.",
-    kNotNegative);
-  v("spread_lags", spread_lags, "Standard deviation of that place, likewise; 0 and 0: to its own waypoint alone.",
+  v("shift_lags", shift_lags,
+    "Distance ahead, in lags, of the part of the tool's path to which a place of the cut responds.", kNotNegative);
+  v("spread_lags", spread_lags,
+    "Standard deviation of that response along the path, in lags; if both are 0, a place responds to its own waypoint "
+    "alone.",
     kNotNegative);
 }
 inline void describe(Visitor& v, ConvergenceSettings& s) {
   v("region", s.region, "Where waypoints may be moved to.");
-  v("simulations", s.simulations, "At most, the first (as intended) and the verifying one counted.", {2.0});
+  v("simulations", s.simulations,
+    "Greatest number of simulations, including the first (as intended) and the verifying one.", {2.0});
   v("more_simulations", s.more_simulations,
-    "Beyond these, at most, while the nearest pass has an open layer or a verdict against it: it is moved by "
-    "more_move_mm, out and in, then by twice that.",
+    "Greatest number of further simulations while the nearest pass has an open layer or a verdict against it: it is "
+    "moved by more_move_mm, out and in, then by twice that.",
     kNotNegative);
   v({"more_move_mm",
-     "Of each waypoint, at first: enough for other tissue to hang on at the seam, far less than the electrode's "
-     "radius.",
+     "First move of each waypoint in more_simulations: enough for other tissue to hang on at the seam, far less than "
+     "the electrode's radius.",
      "mm"},
     s.more_move_mm, kPositive);
-  v({"floor_mm", "Mean |error| that the mesh leaves in tissue that does not move.", "mm"}, s.floor_mm, kNotNegative);
-  v({"tolerance_mm", "Converged: mean |error| within this of the floor.", "mm"}, s.tolerance_mm, kPositive);
+  v({"floor_mm", "Mean |error| that the mesh alone causes, in tissue that cannot move.", "mm"}, s.floor_mm,
+    kNotNegative);
+  v({"tolerance_mm", "Converged if the mean |error| is within this of floor_mm.", "mm"}, s.tolerance_mm, kPositive);
   v("relaxation", s.relaxation, "Share of the error that a plain step corrects.", {0.0, 1.0, true});
   describe_blur(v, s.smoothing_mm, s.shift_lags, s.spread_lags);
-  v("memory", s.memory, "Earlier passes that Anderson acceleration looks back at; 0: plain steps.", kNotNegative);
-  v({"trust_mm", "Farthest that a waypoint moves in one pass; halved after a pass that made it worse.", "mm"},
+  v("memory", s.memory, "Number of earlier passes that Anderson acceleration uses; 0: plain steps.", kNotNegative);
+  v({"trust_mm", "Greatest move of a waypoint in one pass; halved after a pass that made the cut worse.", "mm"},
     s.trust_mm, kPositive);
   v({"least_move_mm", "Passes that would move no waypoint by more than this are not made.", "mm"}, s.least_move_mm,
     kNotNegative);
   v({"bias_mm",
-     "Expected error of the real cut less that of the simulated one, positive: farther out; none, one for the whole "
+     "Expected error of the real cut minus that of the simulated one, positive: farther out; none, one for the whole "
      "path, or one per waypoint. Added to what is measured.",
      "mm"},
     s.bias_mm);
   v("simulated_share", s.simulated_share,
-    "How much a real cut along the intended path is expected to err per simulated error (with its bias), waypoint by "
-    "waypoint. What it lacks or exceeds is expected of every pass: a path and its cut move together.",
+    "Expected error of a real cut along the intended path per simulated error (with its bias), waypoint by waypoint. "
+    "The difference between the two is expected of every pass: a path and its cut move together.",
     {-1.0, 3.0});
-  v({"residual_mm", "Expected beyond that; none, or one per waypoint.", "mm"}, s.residual_mm);
+  v({"residual_mm", "Error expected beyond that; none, or one per waypoint.", "mm"}, s.residual_mm);
 }
 
 /// One pass of the iteration: a path and its simulated cut.
@@ -146,21 +154,22 @@ struct CompensationPass {
   [[nodiscard]] double cost_mm() const { return mean_abs_error_mm.value() + shortfall_mm; }
 };
 inline void describe(Visitor& v, CompensationPass& p) {
-  v("offset_mm", p.offset_mm, "Of each waypoint from the intended path; positive: outwards.");
-  v("error_mm", p.error_mm, "Of each waypoint, averaged along the path.");
-  v("is_limited", p.is_limited, "Of each waypoint: whether the safe region cut its move short.");
-  v.derived("limited_waypoints", std::count(p.is_limited.begin(), p.is_limited.end(), 1), "How many.");
-  v("is_interpolated", p.is_interpolated, "Of each waypoint: whether nothing was measured there.");
-  v.bulk("along_mm", p.along_mm, "Of each measured point: its place on the intended path.");
-  v.bulk("point_error_mm", p.point_error_mm, "Of each measured point: signed error, with the bias.");
-  v("mean_abs_error_mm", p.mean_abs_error_mm, "Of all measured points.");
-  v("max_abs_error_mm", p.max_abs_error_mm, "Of all measured points.");
+  v("offset_mm", p.offset_mm, "Distance of each waypoint from its intended place; positive: outwards.");
+  v("error_mm", p.error_mm, "Error at each waypoint, averaged along the path.");
+  v("is_limited", p.is_limited, "For each waypoint: whether the safe region cut its move short.");
+  v.derived("limited_waypoints", std::count(p.is_limited.begin(), p.is_limited.end(), 1),
+            "Number of waypoints whose move the safe region cut short.");
+  v("is_interpolated", p.is_interpolated, "For each waypoint: whether nothing was measured there.");
+  v.bulk("along_mm", p.along_mm, "Place of each measured point on the intended path.");
+  v.bulk("point_error_mm", p.point_error_mm, "Signed error of each measured point, with the bias.");
+  v("mean_abs_error_mm", p.mean_abs_error_mm, "Mean |error| of all measured points.");
+  v("max_abs_error_mm", p.max_abs_error_mm, "Greatest |error| of all measured points.");
   v("smooth_error_mm", p.smooth_error_mm, "Mean of |error_mm|.");
-  v("lag_mm", p.lag_mm, "Of the tissue when it was cut.");
-  v("shortfall_mm", p.shortfall_mm, "In depth.");
+  v("lag_mm", p.lag_mm, "Lag of the tissue when it was cut.");
+  v("shortfall_mm", p.shortfall_mm, "Depth that the kerf lacks.");
   v("open_layers", p.open_layers, "Planned layers in which the ring stayed open.");
-  v("verdict", p.verdict, "Of what another course may mend.");
-  v("max_move_mm", p.max_move_mm, "From the pass that it was made from.");
+  v("verdict", p.verdict, "Verdict on what another path may mend.");
+  v("max_move_mm", p.max_move_mm, "Greatest move of a waypoint from the pass that this one was made from.");
   v("success", p.is_success, "Whether the cut succeeded.");
 }
 
@@ -190,12 +199,12 @@ struct ConvergedCompensation {
   [[nodiscard]] const CompensationPass& result() const { return passes.at(best); }
 };
 inline void describe(Visitor& v, ConvergedCompensation& c) {
-  v.bulk("path", c.path, "Of the best pass.");
-  v("compensation_outcome", c.outcome, "How it ended.");
-  v.derived("simulations", c.passes.size(), "How many.");
-  v("best_pass", c.best, "Which of them.");
-  v("contraction", c.contraction, "What each pass leaves of the error, geometric mean.");
-  v("history", c.passes, "One for each simulation, in order.");
+  v.bulk("path", c.path, "Path of the best pass.");
+  v("compensation_outcome", c.outcome, "How the compensation ended.");
+  v.derived("simulations", c.passes.size(), "Number of simulations.");
+  v("best_pass", c.best, "Index of the best pass.");
+  v("contraction", c.contraction, "Fraction of the error that remains after each pass, geometric mean.");
+  v("history", c.passes, "The passes, one for each simulation, in order.");
 }
 
 /// Moves the waypoints of a path over the surface, pass by pass, until the cut lies where it was intended. Each pass

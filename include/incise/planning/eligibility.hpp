@@ -34,10 +34,10 @@ struct SpecimenDistance {
   double degrees = 4.0;          ///< degrees of freedom of that standard deviation: n + 3 for n specimens, >= 4
 };
 inline void describe(Visitor& v, SpecimenDistance& d) {
-  v("name", d.name, "Of the quantity.");
-  v("value", d.value, "Of this specimen.");
-  v("calibrated_mean", d.mean, "Of the calibration's specimens; of a logarithmic quantity the geometric one.");
-  v("in_sd", d.in_sd, "Standard deviations of what a next specimen would show by which it lies above the mean.");
+  v("name", d.name, "Name of the quantity.");
+  v("value", d.value, "Value for this specimen.");
+  v("calibrated_mean", d.mean, "Mean over the calibration's specimens; geometric for a logarithmic quantity.");
+  v("in_sd", d.in_sd, "Value minus mean, in standard deviations of the prediction for a next specimen.");
   v.internal("is_better_below", d.is_better_below, "A value below the mean is in favour of the specimen.");
   v.internal("degrees", d.degrees, "Degrees of freedom of that standard deviation.");
 }
@@ -101,13 +101,19 @@ struct EligibilityRules {
   double most_p_close_margin = 0.05;
 };
 inline void describe(Visitor& v, EligibilityRules& r) {
-  v("least_gain_sds", r.least_gain_sds, "The gain has to be above this many of its standard deviations.", kNotNegative);
-  v("most_p_worse", r.most_p_worse, "Probability that the corrected cut is the worse one, alike and in all.",
+  v("least_gain_sds", r.least_gain_sds, "The expected gain must be above this many of its standard deviations.",
+    kNotNegative);
+  v("most_p_worse", r.most_p_worse,
+    "Greatest probability that the corrected cut is the worse one, for a specimen like the calibrated ones and "
+    "overall.",
     {0.0, 1.0});
-  v("most_distance_sds", r.most_distance_sds, "Of any quantity from the calibrated specimens.", kPositive);
-  v({"most_rmse_mm", "Of the registration.", "mm"}, r.most_rmse_mm, kPositive);
-  v("most_unmeasured", r.most_unmeasured, "Of the corrected path's tissues, by weight.", {0.0, 1.0});
-  v("most_p_close_margin", r.most_p_close_margin, "Of the corrected path, where it is above the intended one's.",
+  v("most_distance_sds", r.most_distance_sds,
+    "Greatest distance of any quantity from the calibrated specimens, in standard deviations.", kPositive);
+  v({"most_rmse_mm", "Greatest rms distance of the registration.", "mm"}, r.most_rmse_mm, kPositive);
+  v("most_unmeasured", r.most_unmeasured,
+    "Greatest weight of the tissues in which the cut along the corrected path cannot be measured.", {0.0, 1.0});
+  v("most_p_close_margin", r.most_p_close_margin,
+    "Greatest probability of a close margin along the corrected path, where it is above the intended path's.",
     {0.0, 1.0, true, true});
 }
 

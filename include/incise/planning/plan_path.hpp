@@ -52,20 +52,22 @@ inline void describe_kind(Visitor& v, PlanSettings& s) {
 }
 /// Describes all other fields.
 inline void describe_course(Visitor& v, PlanSettings& s) {
-  v({"lateral_margin_mm", "From the tumour edge to the kerf's mid-line.", "mm"}, s.lateral_margin_mm, {0.5, 50.0});
-  v({"depth_mm", "Of the tool's tip below the surface.", "mm"}, s.depth_mm, {0.5, 50.0});
-  v({"speed_mm_s", "Of the real tool.", "mm/s"}, s.speed_mm_s, {0.1, 50.0});
+  v({"lateral_margin_mm", "Distance from the tumour edge to the kerf's mid-line.", "mm"}, s.lateral_margin_mm,
+    {0.5, 50.0});
+  v({"depth_mm", "Depth of the tool's tip below the surface.", "mm"}, s.depth_mm, {0.5, 50.0});
+  v({"speed_mm_s", "Speed of the real tool.", "mm/s"}, s.speed_mm_s, {0.1, 50.0});
   v({"power_w",
-     "Electrosurgical power: with speed and depth, how fast contact cuts (cut.power_exponent), and how far beside the "
-     "cut heat reaches.",
+     "Electrosurgical power. With speed and depth, it determines how fast contact cuts (cut.power_exponent) and how "
+     "far beside the cut heat reaches.",
      "W"},
     s.power_w, {0.0, 120.0, true});
-  v.direction("approach", s.approach, "Into the tissue, as camera and surgeon look.");
+  v.direction("approach", s.approach, "Direction into the tissue, in which camera and surgeon look.");
   v.direction("start_direction", s.start_direction,
-              "A ring starts at its waypoint farthest along this; the start decides where the error falls.");
-  v("waypoints", s.waypoints, "Evenly spaced along the path.", {2.0, 2000.0});
+              "A ring starts at its waypoint farthest along this direction; the start decides where the error falls.");
+  v("waypoints", s.waypoints, "Number of waypoints, evenly spaced along the path.", {2.0, 2000.0});
   v("tool_axis", s.axis_mode, "How the tool is held at a waypoint.");
-  v.internal("rim_clearance_mm", s.rim_clearance_mm, "From where the surface ends in the picture.", kNotNegative);
+  v.internal("rim_clearance_mm", s.rim_clearance_mm,
+             "Least distance of the path from where the surface ends in the picture.", kNotNegative);
 }
 inline void describe(Visitor& v, PlanSettings& s) {
   describe_kind(v, s);

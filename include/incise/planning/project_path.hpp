@@ -30,19 +30,21 @@ inline constexpr Range kLaidDepthMm{0.0, 50.0, true};
 inline constexpr Range kLaidSpeedMmS{0.0, 50.0, true};
 inline void describe(Visitor& v, ProjectSettings& s) {
   v("kind", s.kind, "A mark along the tumour edge, or the incision.");
-  v({"mark_depth_mm", "Of a marking path below the surface (the paper's inferior offset).", "mm"}, s.mark_depth_mm,
-    kLaidDepthMm);
-  v({"mark_speed_mm_s", "Of a marking path.", "mm/s"}, s.mark_speed_mm_s, kLaidSpeedMmS);
-  v("mark_waypoints", s.mark_waypoints, "Along the tumour edge.", {8.0, 2000.0});
-  v({"incise_depth_mm", "Of an incision; absent: as the path says.", "mm"}, s.incise_depth_mm, kLaidDepthMm);
-  v({"incise_speed_mm_s", "Of an incision; absent: as the path says.", "mm/s"}, s.incise_speed_mm_s, kLaidSpeedMmS);
-  v({"max_gap_mm", "Farthest from a waypoint to the nearest measured point, in the picture.", "mm"}, s.max_gap_mm,
-    kNotNegative);
-  v({"smoothing_mm", "Radius over which the shift onto the surface is averaged; 0: every point by itself.", "mm"},
+  v({"mark_depth_mm", "Depth of a marking path below the surface (the paper's inferior offset).", "mm"},
+    s.mark_depth_mm, kLaidDepthMm);
+  v({"mark_speed_mm_s", "Speed along a marking path.", "mm/s"}, s.mark_speed_mm_s, kLaidSpeedMmS);
+  v("mark_waypoints", s.mark_waypoints, "Number of waypoints of a marking path along the tumour edge.", {8.0, 2000.0});
+  v({"incise_depth_mm", "Depth of an incision; absent: that of the path.", "mm"}, s.incise_depth_mm, kLaidDepthMm);
+  v({"incise_speed_mm_s", "Speed of an incision; absent: that of the path.", "mm/s"}, s.incise_speed_mm_s,
+    kLaidSpeedMmS);
+  v({"max_gap_mm", "Greatest distance from a waypoint to the nearest measured point, in the picture.", "mm"},
+    s.max_gap_mm, kNotNegative);
+  v({"smoothing_mm", "Radius over which the shift onto the surface is averaged; 0: each point is shifted by itself.",
+     "mm"},
     s.smoothing_mm, {0.0, 100.0});
-  v({"max_shift_mm", "Farthest along the approach that a point is moved onto the surface.", "mm"}, s.max_shift_mm,
+  v({"max_shift_mm", "Greatest shift of a point onto the surface, along the approach.", "mm"}, s.max_shift_mm,
     kNotNegative);
-  v("tool_axis", s.axis_mode, "The tool as the path holds it, or against the measured surface's normal.");
+  v("tool_axis", s.axis_mode, "How the tool is held: as in the path, or against the measured surface's normal.");
 }
 
 /// Surface of the measured tissue: a cloud or a mesh of triangles, in the robot's frame, seen along an approach.

@@ -51,15 +51,16 @@ inline void describe(Visitor& v, RobustSettings& s) {
   v("region", s.region, "Where waypoints may be moved to.");
   v({"target_mm", "Intended distance of the measured contour from the edge.", "mm"}, s.target_mm, kPositive);
   v({"kerf_allowance_mm",
-     "What of the target is no tissue: the electrode's radius for a mid-line, 0 for an inner edge.", "mm"},
+     "Part of the target that is not tissue: the electrode's radius for a mid-line, 0 for an inner edge.", "mm"},
     s.kerf_allowance_mm, kNotNegative);
-  v("max_probability", s.max_probability, "Of less tissue than the region's close margin anywhere along the cut.",
+  v("max_probability", s.max_probability,
+    "Greatest probability of less tissue than the region's close margin anywhere along the cut.",
     {0.0, 1.0, true, true});
   describe_blur(v, s.smoothing_mm, s.shift_lags, s.spread_lags);
-  v({"trust_mm", "Farthest that a waypoint moves from the corrected path.", "mm"}, s.trust_mm, kPositive);
-  v("rounds", s.rounds, "Most times that the path is chosen and cut in every scenario.", {1.0});
-  v("samples", s.samples, "Residuals that probabilities are counted over.", {100.0});
-  v("seed", s.seed, "Of these.");
+  v({"trust_mm", "Greatest distance of a waypoint from the corrected path.", "mm"}, s.trust_mm, kPositive);
+  v("rounds", s.rounds, "Greatest number of times that the path is chosen and cut in every scenario.", {1.0});
+  v("samples", s.samples, "Number of residuals over which probabilities are counted.", {100.0});
+  v("seed", s.seed, "Seed of these residuals.");
 }
 
 /// Expected errors and risk of a path, from cuts along it in every scenario.
@@ -78,12 +79,12 @@ inline void describe(Visitor& v, PathRisk& r) {
     return r.unmeasured_weight < 1.0 ? std::optional(value) : std::nullopt;
   };
   v.derived("expected_abs_error_mm", if_measured(r.expected_abs_error_mm),
-            "Mean over scenarios, residuals and the path.");
+            "Mean |error| over scenarios, residuals and the path.");
   describe_interval(v, {"abs_error_80_mm", "Middle 80 % of the mean absolute error along one cut.", "mm"},
                     r.abs_error_80);
-  describe_interval(v, {"abs_error_95_mm", "Middle 95 %, likewise.", "mm"}, r.abs_error_95);
+  describe_interval(v, {"abs_error_95_mm", "Middle 95 % of the same.", "mm"}, r.abs_error_95);
   v.derived("p_close_margin", if_measured(r.p_close_margin),
-            "That somewhere less tissue is left than the close margin.");
+            "Probability that somewhere less tissue is left than the close margin.");
   v("unmeasured_weight", r.unmeasured_weight, "Share of the scenarios whose cut left nothing to measure.", {0.0, 1.0});
 }
 

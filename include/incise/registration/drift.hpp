@@ -27,7 +27,7 @@ struct ScaleRange {
 inline void describe(Visitor& v, ScaleRange& r) {
   v("low", r.low, "Least scale.", kNotNegative);
   std::optional<double> high = if_finite(r.high);
-  v("high", high, "Greatest, at least the least one; absent: any.", kPositive);
+  v("high", high, "Greatest scale, not below the least; absent: no limit.", kPositive);
   if (v.sets()) r.high = high.value_or(std::numeric_limits<double>::infinity());
 }
 
@@ -42,16 +42,20 @@ struct DriftSettings {
   std::optional<double> first_sigma;
 };
 inline void describe(Visitor& v, DriftSettings& s) {
-  v("scale", s.scale, "What the scale may be; low = high fixes it.");
-  v("outlier_weight", s.outlier_weight, "w: share of the target that belongs to nothing in the source.",
+  v("scale", s.scale, "Range of the scale; low = high fixes it.");
+  v("outlier_weight", s.outlier_weight, "Share of the target that has no counterpart in the source (w).",
     {0.0, 1.0, true, true});
-  v("max_iterations", s.max_iterations, "Steps of expectation and maximisation, on all levels together.", {1.0});
-  v("tolerance", s.tolerance, "Converged when all further steps together would move the source by less (estimated).",
+  v("max_iterations", s.max_iterations,
+    "Greatest number of steps of expectation and maximisation, on all levels together.", {1.0});
+  v("tolerance", s.tolerance,
+    "Converged when all further steps together would move the source by less than this (estimated), as a share of the "
+    "radius.",
     kPositive);
-  v("dimensions", s.dimensions, "2: drawings with all z equal; rotation about z only.", {2.0, 3.0});
-  v("coarse_to_fine", s.coarse_to_fine, "Wide Gaussians see clusters in place of points; false: all points always.");
+  v("dimensions", s.dimensions, "3; or 2 for drawings with all z equal, with rotation about z only.", {2.0, 3.0});
+  v("coarse_to_fine", s.coarse_to_fine, "Whether wide Gaussians use clusters in place of points.");
   v("first_sigma", s.first_sigma,
-    "Width to start with, as a share of the radius; absent: from the clouds' mean squared distance.", kPositive);
+    "First width of the Gaussians, as a share of the radius; absent: from the clouds' mean squared distance.",
+    kPositive);
 }
 
 /// Returns every violation; empty: valid.

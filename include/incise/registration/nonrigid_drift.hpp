@@ -18,17 +18,19 @@ struct NonrigidSettings {
   std::optional<double> first_sigma;
 };
 inline void describe(Visitor& v, NonrigidSettings& s) {
-  v("smoothness", s.smoothness, "Nonrigid: range of the bending (β), share of the source's root mean square radius.",
-    {0.01, 10.0});
+  v("smoothness", s.smoothness,
+    "Nonrigid: range of the bending (β), as a share of the source's root mean square radius.", {0.01, 10.0});
   v("stiffness", s.stiffness, "Nonrigid: cost of bending against misfit (λ).", {1e-6, 1e6});
-  v("outlier_weight", s.outlier_weight, "w: share of the target that belongs to nothing in the source.",
+  v("outlier_weight", s.outlier_weight, "Share of the target that has no counterpart in the source (w).",
     {0.0, 1.0, true, true});
-  v("max_iterations", s.max_iterations, "Steps of expectation and maximisation.", {1.0});
+  v("max_iterations", s.max_iterations, "Greatest number of steps of expectation and maximisation.", {1.0});
   v("tolerance", s.tolerance,
     "Converged when a step moves the points by less than this share of the radius (rms), twice in a row.", kPositive);
-  v("dimensions", s.dimensions, "2: drawings with all z equal.", {2.0, 3.0});
-  v("max_centers", s.max_centers, "Rank of the deformation; a smoother one needs fewer.", {4.0, 2000.0});
-  v("first_sigma", s.first_sigma, "As in DriftSettings; for clouds that are aligned already, say 0.1.", kPositive);
+  v("dimensions", s.dimensions, "3; or 2 for drawings with all z equal.", {2.0, 3.0});
+  v("max_centers", s.max_centers, "Rank of the deformation; a smoother deformation needs a lower rank.", {4.0, 2000.0});
+  v("first_sigma", s.first_sigma,
+    "First width of the Gaussians, as in DriftSettings; for clouds that are already aligned, for example 0.1.",
+    kPositive);
 }
 
 struct NonrigidDrift {

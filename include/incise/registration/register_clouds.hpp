@@ -86,23 +86,25 @@ struct PoseObservability {
   std::string weakest;                      ///< the motion of `weakest_sd_mm`, in words for a person
 };
 inline void describe(Visitor& v, PoseObservability& c) {
-  v("motions", c.motions, "7, or 6 with the scale fixed.");
+  v("motions", c.motions, "Number of motions: 7, or 6 with the scale fixed.");
   std::vector<std::optional<double>> visible;
   for (int k = 0; k < c.motions; ++k) visible.push_back(if_finite(c.visible[static_cast<std::size_t>(k)]));
   v.derived("visible", visible, "Share of each motion that appears in the distances, ascending.");
   v.derived("sharpness", std::vector{if_finite(c.sharpness[0]), if_finite(c.sharpness[1])},
-            "Of the two least visible ones, from moving the source to and fro.");
-  v("weakest_motion", c.weakest, "What kind of motion is least determined.");
-  v.derived("weakest_sd_mm", if_finite(c.weakest_sd_mm), "Along the least determined motion.");
-  v.derived("sd_mm", if_finite(c.sd_mm), "Of the overlap's position from noise, all motions together (rms).");
-  v.derived("rotation_sd_deg", if_finite(c.rotation_sd_deg), "Of the rotation.");
-  v.derived("translation_sd_mm", if_finite(c.translation_sd_mm), "Of the overlap's middle.");
-  v.derived("scale_sd", if_finite(c.scale_sd), "Relative.");
-  v({"center_mm", "Middle of the overlap, target frame.", "mm"}, c.center_mm);
+            "Sharpness of the two least visible motions, measured by moving the source to and fro.");
+  v("weakest_motion", c.weakest, "Motion that is least determined, in words.");
+  v.derived("weakest_sd_mm", if_finite(c.weakest_sd_mm), "Standard deviation along the least determined motion.");
+  v.derived("sd_mm", if_finite(c.sd_mm),
+            "Standard deviation of the overlap's position due to noise, all motions together (rms).");
+  v.derived("rotation_sd_deg", if_finite(c.rotation_sd_deg), "Standard deviation of the rotation.");
+  v.derived("translation_sd_mm", if_finite(c.translation_sd_mm), "Standard deviation of the overlap's middle.");
+  v.derived("scale_sd", if_finite(c.scale_sd), "Relative standard deviation of the scale.");
+  v({"center_mm", "Middle of the overlap, in the target's frame.", "mm"}, c.center_mm);
   std::vector<std::vector<std::optional<double>>> covariance(7);
   for (int i = 0; i < 7; ++i)
     for (int k = 0; k < 7; ++k) covariance[static_cast<std::size_t>(i)].push_back(if_finite(c.covariance(i, k)));
-  v.derived("covariance", covariance, "Of rotation vector (rad), translation (mm) and log scale, about center_mm.");
+  v.derived("covariance", covariance,
+            "Covariance of rotation vector (rad), translation (mm) and log scale, about center_mm.");
 }
 
 struct Registration {

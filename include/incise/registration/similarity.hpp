@@ -17,8 +17,8 @@ struct Similarity {
 };
 inline void describe(Visitor& v, Similarity& t) {
   v("scale", t.scale, "Factor of all lengths.", kPositive);
-  v("rotation", t.rotation, "Rows of the proper rotation.");
-  v({"translation_mm", "After scale and rotation.", "mm"}, t.translation_mm);
+  v("rotation", t.rotation, "Rotation matrix, by rows.");
+  v({"translation_mm", "Translation, applied after scale and rotation.", "mm"}, t.translation_mm);
 }
 
 /// Returns a after b: (a * b)(p) = a(b(p)).

@@ -92,20 +92,20 @@ struct ProgramCheck {
   std::string text;                       ///< meaning of the check, for a person
   std::optional<std::size_t> waypoint{};  ///< index of the path's waypoint at or before that pose
   bool is_overridden = false;             ///< a person has taken responsibility for the failed check
-  /// Returns one sentence: "margin: 1.83 mm at waypoint 12 (pose 20), has to be >= 2.2 mm: least distance of …".
+  /// Returns one sentence: "margin: 1.83 mm at waypoint 12 (pose 20), must be >= 2.2 mm: least distance of …".
   [[nodiscard]] std::string message() const;
 };
 inline void describe(Visitor& v, ProgramCheck& c) {
-  v("name", c.name, "Of the check.");
-  v("passed", c.passed, "Whether the program keeps to it.");
-  v("value", c.value, "What was found.");
-  v("limit", c.limit, "What it is held against.");
-  v("relation", c.relation, "What a good value is to the limit; empty: a plain yes or no.");
-  v("unit", c.unit, "Of both.");
-  v("pose", c.pose, "The worst pose of the program.", kNotNegative);
-  v("text", c.text, "For a person.");
-  v("waypoint", c.waypoint, "Of the path, at or before that pose.", kNotNegative);
-  v("overridden", c.is_overridden, "A person has taken it on them.");
+  v("name", c.name, "Name of the check.");
+  v("passed", c.passed, "Whether the program passes the check.");
+  v("value", c.value, "Value that was found.");
+  v("limit", c.limit, "Limit of the value.");
+  v("relation", c.relation, "Relation that the value must have to the limit; empty: a yes or no.");
+  v("unit", c.unit, "Unit of the value and the limit.");
+  v("pose", c.pose, "Index of the worst pose of the program.", kNotNegative);
+  v("text", c.text, "Meaning of the check, for a person.");
+  v("waypoint", c.waypoint, "Index of the path's waypoint at or before that pose.", kNotNegative);
+  v("overridden", c.is_overridden, "Whether a person has taken responsibility for the failed check.");
 }
 
 struct ProgramChecks {

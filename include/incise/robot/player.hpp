@@ -25,19 +25,20 @@ struct PlayerSettings {
   double max_rest_s = 1.5;
 };
 inline void describe(Visitor& v, PlayerSettings& s) {
-  v("speed_slider", s.speed_slider, "Share that the controller's slider stands at.", {0.0, 1.0, true});
-  v({"cycle_s", "Of the controller; 0.002: 500 Hz.", "s"}, s.cycle_s, {1e-4, 0.02});
-  v({"end_zone_mm", "Of the cut at either end, where the tip speeds up and slows down.", "mm"}, s.end_zone_mm,
+  v("speed_slider", s.speed_slider, "Setting of the controller's speed slider, as a share.", {0.0, 1.0, true});
+  v({"cycle_s", "Cycle time of the controller; 0.002: 500 Hz.", "s"}, s.cycle_s, {1e-4, 0.02});
+  v({"end_zone_mm", "Length of the cut at either end in which the tip speeds up or slows down.", "mm"}, s.end_zone_mm,
     kNotNegative);
-  v({"max_deviation_mm", "Most that the tip may leave the intended course by, for a success.", "mm"},
+  v({"max_deviation_mm", "Greatest distance of the tip from the intended course, for a success.", "mm"},
     s.max_deviation_mm, kPositive);
-  v({"max_lean_deg", "Of the tool's axis from the intended one.", "deg"}, s.max_lean_deg, kPositive);
+  v({"max_lean_deg", "Greatest angle of the tool's axis from the intended one.", "deg"}, s.max_lean_deg, kPositive);
   v("speed_tolerance", s.speed_tolerance, "Share by which the tip may be faster than intended, or slower in the cut.",
     kPositive);
-  v({"max_way_back_mm", "Along the course.", "mm"}, s.max_way_back_mm, kPositive);
-  v({"max_way_left_mm", "Of the course, before its first and after its last place.", "mm"}, s.max_way_left_mm,
+  v({"max_way_back_mm", "Greatest distance that the tip may go back along the course.", "mm"}, s.max_way_back_mm,
     kPositive);
-  v({"max_rest_s", "In the tissue, beyond the intended dwell: a stream holds still where motions end.", "s"},
+  v({"max_way_left_mm", "Greatest length of the course that may be left out at its beginning or end.", "mm"},
+    s.max_way_left_mm, kPositive);
+  v({"max_rest_s", "Longest rest in the tissue beyond the intended dwell; a stream rests where a motion ends.", "s"},
     s.max_rest_s, kPositive);
 }
 
@@ -83,21 +84,22 @@ struct ReplaySample {
 
 inline void describe(Visitor& v, ReplaySample& s) {
   v({"time_s", "From the start of the program.", "s"}, s.time_s);
-  v({"q_rad", "Joints.", "rad"}, s.q_rad);
-  v({"tip_mm", "Of the tool.", "mm"}, s.tip_mm);
-  v("axis", s.axis, "Of the tool, out of its tip.");
-  v({"tip_speed_mm_s", "Over the cycle before.", "mm/s"}, s.tip_speed_mm_s);
-  v({"deviation_mm", "Of the tip from the intended course; 0 where none is known.", "mm"}, s.deviation_mm);
-  v("phase", s.phase, "Of the program.");
+  v({"q_rad", "Joint angles.", "rad"}, s.q_rad);
+  v({"tip_mm", "Position of the tool's tip.", "mm"}, s.tip_mm);
+  v("axis", s.axis, "Axis of the tool, pointing out of its tip.");
+  v({"tip_speed_mm_s", "Mean speed of the tip over the previous cycle.", "mm/s"}, s.tip_speed_mm_s);
+  v({"deviation_mm", "Distance of the tip from the intended course; 0 if the course is not known.", "mm"},
+    s.deviation_mm);
+  v("phase", s.phase, "Phase of the program.");
 }
 
 struct SpeedNumbers {
   double mean = 0.0, min = 0.0, max = 0.0;
 };
 inline void describe(Visitor& v, SpeedNumbers& n) {
-  v("mean", n.mean, "Over time.");
-  v("min", n.min, "Least.");
-  v("max", n.max, "Greatest.");
+  v("mean", n.mean, "Mean over time.");
+  v("min", n.min, "Least value.");
+  v("max", n.max, "Greatest value.");
 }
 
 /// Result of playing a program: the arm's simulated motion and how well it follows the intended course.

@@ -50,22 +50,24 @@ struct ProgramSettings {
   std::optional<double> spin_deg{};
 };
 inline void describe(Visitor& v, ProgramSettings& s) {
-  v({"approach_height_mm", "Of the first and the last pose's tip above the entry, against the tool's axis.", "mm"},
+  v({"approach_height_mm", "Height of the tip above the entry in the first and the last pose, along the tool's axis.",
+     "mm"},
     s.approach_height_mm, {0.0, kLargestLengthMm});
   v({"clearance_mm", "Height at which the fast approach ends and the plunge begins.", "mm"}, s.clearance_mm, kPositive);
-  v({"approach_speed_mm_s", "Through the air.", "mm/s"}, s.approach_speed_mm_s, kPositive);
-  v({"plunge_speed_mm_s", "Into the tissue and out of it.", "mm/s"}, s.plunge_speed_mm_s, kPositive);
-  v({"overlap_mm", "How far a closed path runs on beyond its start; without it the ring may stay open.", "mm"},
+  v({"approach_speed_mm_s", "Speed through the air.", "mm/s"}, s.approach_speed_mm_s, kPositive);
+  v({"plunge_speed_mm_s", "Speed into the tissue and out of it.", "mm/s"}, s.plunge_speed_mm_s, kPositive);
+  v({"overlap_mm", "Distance that a closed path continues beyond its start; without it, the ring may stay open.", "mm"},
     s.overlap_mm, {0.0, kLargestLengthMm});
   v({"dwell_s", "Rest at the end of the cut, before the exit.", "s"}, s.dwell_s, kNotNegative);
-  v({"chord_error_mm", "Most that the straight moves between poses deviate from the smooth course.", "mm"},
+  v({"chord_error_mm", "Greatest deviation of the straight moves between poses from the smooth course.", "mm"},
     s.chord_error_mm, kPositive);
-  v({"max_spacing_mm", "Of the poses along the cut.", "mm"}, s.max_spacing_mm, kPositive);
-  v({"acceleration_mm_s2", "Most that the tip speeds up or slows down by.", "mm/s2"}, s.acceleration_mm_s2, kPositive);
-  v({"jerk_mm_s3", "Most that this acceleration changes by.", "mm/s3"}, s.jerk_mm_s3, kPositive);
+  v({"max_spacing_mm", "Greatest spacing of the poses along the cut.", "mm"}, s.max_spacing_mm, kPositive);
+  v({"acceleration_mm_s2", "Greatest acceleration and deceleration of the tip.", "mm/s2"}, s.acceleration_mm_s2,
+    kPositive);
+  v({"jerk_mm_s3", "Greatest rate at which that acceleration changes.", "mm/s3"}, s.jerk_mm_s3, kPositive);
   v.direction("tool_x_hint", s.tool_x_hint,
               "The tool's x axis lies as close to this direction as its mean z axis allows.");
-  v({"spin_deg", "Turn from there about that mean axis; absent: whatever suits the arm best, for a needle is round.",
+  v({"spin_deg", "Turn from there about that mean axis; absent: the turn that suits the arm best (a needle is round).",
      "deg"},
     s.spin_deg);
 }

@@ -19,14 +19,15 @@ struct [[nodiscard]] ProgramAudit {
   [[nodiscard]] bool is_checked() const { return digest == ProgramDigest::Matches && contradictions.empty(); }
 };
 inline void describe(Visitor& v, ProgramAudit& a) {
-  v.derived("checked", a.is_checked(), "It is the program that was written, and its checks come out as it says.");
+  v.derived("checked", a.is_checked(),
+            "Whether the program is unchanged and its checks, made again, agree with its header.");
   v.derived("digest_matches",
             a.digest == ProgramDigest::Absent ? std::nullopt : std::optional(a.digest == ProgramDigest::Matches),
-            "Absent: it carries no digest.");
-  v("contradictions", a.contradictions, "Lines of the header that are not so.");
+            "Whether the digest matches the program; absent: the program has no digest.");
+  v("contradictions", a.contradictions, "Statements of the header that are not true.");
   v("recomputed", a.recomputed, "Names of the checks that were made again.");
-  v("not_recomputed", a.not_recomputed, "Of those that only the header states, or why none was made again.");
-  v("moved_limits", a.moved_limits, "What options moved.");
+  v("not_recomputed", a.not_recomputed, "Names of the other checks, or why no check was made again.");
+  v("moved_limits", a.moved_limits, "Limits that options changed.");
 }
 
 /// Makes the program again from its header (path, tumour edge, settings, limits), checks it again, and compares the

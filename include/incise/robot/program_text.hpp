@@ -47,10 +47,10 @@ inline void describe(Visitor& v, UrScriptSettings& s) {
   v("function_name", s.function_name, "Letters, digits and _, not starting with a digit.");
   v("blend_fraction", s.blend_fraction, "Blend radius of the cut's poses, as a fraction of their spacing.",
     {0.0, 0.5, false, true});
-  v({"lookahead_s", "Of servoj: less lag, less smoothing.", "s"}, s.lookahead_s, {0.03, 0.2});
-  v("gain", s.gain, "Of servoj.", {100.0, 2000.0});
-  v({"settle_s", "Of servoj: rest added where a motion ends, so that the arm has caught up.", "s"}, s.settle_s,
-    {0.0, 5.0});
+  v({"lookahead_s", "Lookahead of servoj: a shorter one gives less lag and less smoothing.", "s"}, s.lookahead_s,
+    {0.03, 0.2});
+  v("gain", s.gain, "Gain of servoj.", {100.0, 2000.0});
+  v({"settle_s", "Rest added to servoj where a motion ends, to let the arm catch up.", "s"}, s.settle_s, {0.0, 5.0});
 }
 /// Returns every violation; empty if valid.
 [[nodiscard]] std::vector<Problem> validate(const UrScriptSettings& settings);

@@ -99,8 +99,8 @@ struct LeftOut {
   Outcome outcome = Outcome::OpenLoop;
 };
 inline void describe(Visitor& v, LeftOut& l) {
-  v("name", l.name, "Of its file.");
-  v("outcome", l.outcome, "Of the cut.");
+  v("name", l.name, "Name of the file of the incision.");
+  v("outcome", l.outcome, "Outcome of the cut.");
 }
 
 /// Result of a comparison; the content of compare.json.

@@ -16,8 +16,8 @@ namespace incise {
 /// is kept.
 class StagesKept : public Cancelled {
  public:
-  explicit StagesKept(const std::string& what, const std::string& kept = "the stages that were finished are kept")
-      : Cancelled(what + "; " + kept + ", run the same command to go on") {}
+  explicit StagesKept(const std::string& what, const std::string& kept = "the finished stages are kept")
+      : Cancelled(what + "; " + kept + ". Run the same command to continue") {}
 };
 
 /// Reads a case and checks that the files that it names exist. @throws as read_case and require_input_files.

@@ -56,19 +56,19 @@ struct VerificationCheck {
 };
 
 inline void describe(Visitor& v, VerificationCheck& c) {
-  v("name", c.name, "Lower case, stable.");
+  v("name", c.name, "Name of the check; lower case, stable.");
   v("passed", c.passed, "Whether the criterion is met.");
-  v("expected", c.expected, "What is known.");
+  v("expected", c.expected, "Known value.");
   std::optional<double> found = if_finite(c.found);
-  v("found", found, "What the solver gave; absent where it did not get that far.");
+  v("found", found, "Value that the solver found; absent if the solver gave up or values did not converge.");
   if (v.sets()) c.found = found.value_or(std::numeric_limits<double>::quiet_NaN());
-  v("tolerance", c.tolerance, "Of the criterion.");
-  v("criterion", c.criterion, "When the check counts as passed.");
-  v("unit", c.unit, "Of expected, found and tolerance.");
-  v("what", c.what, "One sentence.");
-  v("source", c.source, "Of the expected value.");
-  v("note", c.note, "Further figures, or why it failed.");
-  v({"wall_s", "That it took.", "s"}, c.wall_s);
+  v("tolerance", c.tolerance, "Tolerance of the criterion.");
+  v("criterion", c.criterion, "Condition under which the check passes.");
+  v("unit", c.unit, "Unit of expected, found and tolerance.");
+  v("what", c.what, "Question that the check answers, in one sentence.");
+  v("source", c.source, "Source of the expected value.");
+  v("note", c.note, "Further values, or why the check failed.");
+  v({"wall_s", "Duration of the check.", "s"}, c.wall_s);
 }
 
 struct VerificationSettings {

@@ -22,8 +22,8 @@ struct BenchResolution {
 };
 inline void describe(Visitor& v, BenchResolution& r) {
   v("fine_mm", r.fine_mm, "Edge length of the tets round the tumour's ring.", kPositive);
-  v("coarse_mm", r.coarse_mm, "Far from it.", kPositive);
-  v("way_mm", r.way_mm, "Of the tool in a step.", kPositive);
+  v("coarse_mm", r.coarse_mm, "Edge length of the tets far from the ring.", kPositive);
+  v("way_mm", r.way_mm, "Travel of the tool in a step.", kPositive);
 }
 
 /// A virtual specimen in its holder: clamped, its tip pulled forward. Lengths in mm, LPS frame of its CT. Hidden from

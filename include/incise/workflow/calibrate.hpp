@@ -50,15 +50,16 @@ inline void describe(Visitor& v, CalibrationRequest& r) {
   v("method", r.method, "A fit of drag and stiffness, or the paper's grid of speed and dullness.");
   v({"speeds_mm_s", "Speeds of the paper's grid.", "mm/s"}, r.speeds_mm_s, kPositive);
   v("dullnesses", r.dullnesses, "Dullnesses of the paper's grid.", kPositive);
-  v({"fit_speed_mm_s", "Of all cuts of a fit.", "mm/s"}, r.fit_speed_mm_s, kPositive);
-  v({"drag_lengths_mm", "Speed x dwell of the fit's simulations, at the reference stiffness; at least 2.", "mm"},
+  v({"fit_speed_mm_s", "Simulated speed of all cuts of a fit.", "mm/s"}, r.fit_speed_mm_s, kPositive);
+  v({"drag_lengths_mm", "Drag lengths (speed x dwell) of the fit's simulations at the reference stiffness; at least 2.",
+     "mm"},
     r.drag_lengths_mm, kPositive);
-  v({"second_drag_lengths_mm", "Those of them that are also simulated with the second stiffness.", "mm"},
+  v({"second_drag_lengths_mm", "Those of drag_lengths_mm that are also simulated with the second stiffness.", "mm"},
     r.second_drag_lengths_mm, kPositive);
-  v("second_stiffness", r.second_stiffness, "Over the reference; not 1.", kPositive);
-  v("force_sd", r.force_sd, "Of a measured force, relative.", kPositive);
+  v("second_stiffness", r.second_stiffness, "Second stiffness, divided by the reference; not 1.", kPositive);
+  v("force_sd", r.force_sd, "Relative standard deviation of a measured force.", kPositive);
   v("stiffness_sd_with_force", r.stiffness_sd_with_force,
-    "Of ln(stiffness factor) where every specimen's force was measured.", kPositive);
+    "Standard deviation of ln(stiffness factor) if every specimen's force was measured.", kPositive);
   describe(v, r.fit);
 }
 /// Returns every violation; empty if the request is valid.

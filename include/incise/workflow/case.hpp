@@ -30,17 +30,17 @@ struct MeshingChoice {
 };
 inline void describe(Visitor& v, MeshingChoice& m) {
   v({"fine_mm",
-     "Edge length where the needle and its neighbourhood pass; absent: 0.8, in proportion for a body shorter than 40 "
-     "mm.",
+     "Edge length in the band that the needle can reach; absent: 0.8, proportionally less for a body shorter than "
+     "40 mm.",
      "mm"},
     m.fine_mm, {0.1, 20.0});
-  v({"coarse_mm", "Longest edge length, far from the cut; absent: 4, in proportion for a body shorter than 40 mm.",
-     "mm"},
+  v({"coarse_mm",
+     "Longest edge length, far from the cut; absent: 4, proportionally less for a body shorter than 40 mm.", "mm"},
     m.coarse_mm, {0.1, 50.0});
-  v("tets", m.tets, "Count to aim for by scaling both lengths; 0: as the lengths give.", {0.0, 5e6});
+  v("tets", m.tets, "Number of tets to aim for by scaling both lengths; 0: the lengths decide.", {0.0, 5e6});
   v({"survey_mm",
-     "Edge length of the coarse mesh with which the planned cut is found in the unstretched body; absent: 4, in "
-     "proportion for a body shorter than 40 mm.",
+     "Edge length of the coarse mesh with which the planned cut is found in the unstretched body; absent: 4, "
+     "proportionally less for a body shorter than 40 mm.",
      "mm"},
     m.survey_mm, {0.5, 20.0});
 }
@@ -55,9 +55,9 @@ struct LabelMaterial {
 };
 inline void describe(Visitor& v, LabelMaterial& m) {
   v("label", m.label, "Value of the mesh's cell array 'label', or of ct.labels.", kLabelRange);
-  v({"youngs_modulus_kpa", "Young's modulus there; absent: as elsewhere.", "kPa"}, m.youngs_modulus_kpa,
+  v({"youngs_modulus_kpa", "Young's modulus of these tets; absent: as elsewhere.", "kPa"}, m.youngs_modulus_kpa,
     kYoungsModulusLimits);
-  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio there; absent: as elsewhere.", kPoissonsRatioLimits);
+  v("poissons_ratio", m.poissons_ratio, "Poisson's ratio of these tets; absent: as elsewhere.", kPoissonsRatioLimits);
 }
 
 /// Which differences of material within the specimen a study takes from its mesh, or from the sources laid on it
@@ -72,14 +72,14 @@ struct MaterialVariation {
 };
 inline void describe(Visitor& v, MaterialVariation& m) {
   v("from_mesh", m.from_mesh,
-    "Whether the mesh's cell data youngs_modulus_kpa, poissons_ratio and fibre_direction hold, as far as they are "
-    "there.");
+    "Whether to use the mesh's cell data youngs_modulus_kpa, poissons_ratio and fibre_direction, as far as they "
+    "exist.");
   v({"tumor_modulus_kpa",
      "Young's modulus within tumor.surface, which is drawn on the tissue as scanned; absent: as elsewhere.", "kPa"},
     m.tumor_modulus_kpa, kYoungsModulusLimits);
   v("fibre_field", m.fibre_field,
-    "Fibres run from one region to another, through the body at rest; regions as in constraints. Absent: along "
-    "fibre_direction.");
+    "Fibres that run from one region to another, through the body at rest; regions are given as in constraints. "
+    "Absent: fibres run along fibre_direction.");
   v("labels", m.labels,
     "Parts with another stiffness, by the mesh's cell array 'label' or by ct.labels; absent: none.");
 }
@@ -91,7 +91,7 @@ struct LabelToughness {
 };
 inline void describe(Visitor& v, LabelToughness& m) {
   v("label", m.label, "Value of the mesh's cell array 'label'.", kLabelRange);
-  v("toughness", m.toughness, "There; the reference tissue has 1.", {1e-3, 1e3});
+  v("toughness", m.toughness, "Toughness of these tets; the reference tissue has 1.", {1e-3, 1e3});
 }
 
 /// Toughness of the specimen against cutting, relative to the tissue for which speed and dullness hold; 1 unless
@@ -102,9 +102,9 @@ struct ToughnessVariation {
 };
 inline void describe(Visitor& v, ToughnessVariation& m) {
   v("toughness", m.labels,
-    "Parts that take more or less dose to cut, by the mesh's cell array 'label' or by ct.labels; absent: 1 "
+    "Parts that need more or less dose to be cut, by the mesh's cell array 'label' or by ct.labels; absent: 1 "
     "everywhere.");
-  v("toughness_from_mesh", m.from_mesh, "Whether the mesh's cell data toughness hold.");
+  v("toughness_from_mesh", m.from_mesh, "Whether to use the mesh's cell data toughness.");
 }
 
 enum class TumorConfiguration {
@@ -141,19 +141,18 @@ inline void describe(Visitor& v, CompensationChoice& m) {
     "error simulated there; profile: each waypoint moves once by photographed_mm, and simulation only verifies the "
     "path.");
   v("observable", m.observable,
-    "Which line of the cut is brought to its target by the default method; the paper's method: the mid-line.");
+    "Line of the cut that the default method brings to its target; the paper's method uses the mid-line.");
   v({"bias_mm",
-     "Expected error of the real cut less that of the simulated one, positive: farther out; default method only.",
+     "Expected error of the real cut minus that of the simulated one; positive: farther out. Default method only.",
      "mm"},
     m.bias_mm, {-10.0, 10.0});
   v("simulated_share", m.simulated_share,
-    "How much a real cut along the planned path errs per simulated error, the bias included; default method only. 1: "
-    "as "
-    "simulated; 0: as residual_mm says, whatever is simulated.",
+    "Expected error of a real cut along the planned path per simulated error, bias included; default method only. "
+    "1: as simulated; 0: residual_mm alone, whatever is simulated.",
     {-1.0, 3.0});
   v({"residual_mm",
-     "Expected error of the real cut beyond that share, by direction from the middle of the tumour edge, positive: "
-     "farther out; default method only. A list of one number, or of one for each of up to 360 sectors of equal angle, "
+     "Expected error of the real cut beyond that share, by direction from the middle of the tumour edge; positive: "
+     "farther out. Default method only. A list of one number, or of one for each of up to 360 sectors of equal angle, "
      "the first about plan.start_direction, then counter-clockwise as seen along the approach. Empty: none.",
      "mm"},
     m.residual_mm, {-10.0, 10.0});

@@ -32,8 +32,8 @@ struct LayerErrors {
   std::optional<Summary> abs_error_mm;
 };
 inline void describe(Visitor& v, LayerErrors& e) {
-  v({"signed_error_mm", "Of the mid-line there against the lateral margin.", "mm"}, e.signed_error_mm);
-  v({"abs_error_mm", "Its absolute value.", "mm"}, e.abs_error_mm);
+  v({"signed_error_mm", "Signed error of the layer's mid-line against the lateral margin.", "mm"}, e.signed_error_mm);
+  v({"abs_error_mm", "Absolute error of the layer's mid-line.", "mm"}, e.abs_error_mm);
 }
 
 /// One simulated incision and its evaluation.
@@ -67,9 +67,9 @@ struct Correction {
 };
 inline void describe(Visitor& v, Correction& c) {
   v("method", c.method, "How the path was corrected.");
-  v("floor_mm", c.floor_mm, "Mean |error| that the mesh alone leaves.");
+  v("floor_mm", c.floor_mm, "Mesh-resolution limit: mean |error| that the mesh alone causes.");
   describe(v, c.moves);
-  v.bulk("iteration", c.iteration, "Pass by pass.");
+  v.bulk("iteration", c.iteration, "The correction, pass by pass.");
   if (c.iteration && v.is_summary()) describe(v, *c.iteration);
 }
 

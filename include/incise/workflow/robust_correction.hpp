@@ -52,10 +52,10 @@ struct ScenarioRun {
 };
 
 inline void describe(Visitor& v, ScenarioRun& r) {
-  v("setting", r.setting, "The tissue.");
-  v("errors", r.errors, "Absent: no closed ring.");
+  v("setting", r.setting, "Settings with which the cut was simulated.");
+  v("errors", r.errors, "Errors of the cut; absent: no closed ring.");
   v({"profile_mm", "Signed error of its inner edge by sector, from the start direction on.", "mm"}, r.profile_mm);
-  v("problem", r.problem, "Why it could not be carried out; empty: it was.");
+  v("problem", r.problem, "Why the cut could not be simulated; empty: it was.");
 }
 
 /// The tissues that were simulated for a correction, and the differences of real cuts that photographs show.

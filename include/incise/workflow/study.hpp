@@ -45,9 +45,9 @@ struct StageReport {
   double wall_s = 0.0;
 };
 inline void describe(Visitor& v, StageReport& r) {
-  v("name", r.stage, "Of the stage.");
-  v("state", r.state, "Whether it was computed.");
-  v("wall_s", r.wall_s, "Time that it took.");
+  v("name", r.stage, "Name of the stage.");
+  v("state", r.state, "Whether the stage was computed, reused or skipped.");
+  v("wall_s", r.wall_s, "Time that the stage took.");
 }
 
 /// Results of a study so far. Later parts are absent if the study was asked to stop earlier or could not continue.
