@@ -32,8 +32,8 @@ void print_factors(const nlohmann::ordered_json& result) {
     fmt::print("{:<14} {:>6} {:>6} {:>6}", name, part("level_mm"), part("shift_mm"), part("rest_mm"));
   };
   fmt::print(
-      "VIRTUAL specimens: how far each factor moves a ring and changes the mean |error|, mm\n{:<14} {:>6} {:>6} {:>6} "
-      "{:>24} {:>18}\n",
+      "VIRTUAL specimens: how far each factor moves a ring, and how much it changes the mean |error|, mm\n"
+      "{:<14} {:>6} {:>6} {:>6} {:>24} {:>18}\n",
       "factor", "mean", "shift", "rest", "change (95 %)", "closed with/without");
   for (const auto& factor : result.at("factors")) {
     const auto& ends = factor.at("change_95_mm");

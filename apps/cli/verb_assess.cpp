@@ -51,7 +51,7 @@ void add_assess(Application& application) {
   CLI::App* verb =
       application.add_verb("assess",
                            "Advise whether to cut this specimen along the corrected path: compensate, cut_as_planned "
-                           "(both exit status 0) or do_not_use (4). States the expected gain of the correction over a "
+                           "(both exit status 0) or do_not_use (4). States the correction's gain, averaged over a "
                            "calibration's posterior, its uncertainty, and how far the specimen lies from those of the "
                            "calibration",
                            "incise assess specimen --calibration calibration/calibration.json --registration "

@@ -83,8 +83,12 @@ int run(const CompareArguments& arguments, const CommonOptions& options) {
 void add_compare(Application& application) {
   auto [verb, a] = application.add_verb<CompareArguments>(
       "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison", run);
-  verb->add_option("--before", a.before, "Files of `incise evaluate -o`, one for each specimen")->required();
-  verb->add_option("--after", a.after, "Files of the same kind for the cuts after the change")->required();
+  verb->add_option("--before", a.before,
+                   "Files of `incise evaluate -o` for the cuts before the change, one for each specimen")
+      ->required();
+  verb->add_option("--after", a.after,
+                   "Files of `incise evaluate -o` for the cuts after the change, one for each specimen")
+      ->required();
   verb->add_option("--measure", a.measure, "Error to compare")->check(name_of_any<ErrorMeasure>());
   verb->add_flag("--paired", a.settings.is_paired,
                  "The n-th file before and the n-th file after are of the same specimen");

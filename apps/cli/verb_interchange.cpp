@@ -23,7 +23,7 @@ void add_interchange(Application& application) {
                         [&](const auto& context) { return steps::write_for_solver(file, format, output, context); });
       });
   verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
-  verb->add_option("--format", a.format, "sofa: case.scn; febio: case.feb")
+  verb->add_option("--format", a.format, "Format to write: sofa (case.scn) or febio (case.feb)")
       ->check(name_of_any<steps::InterchangeFormat>())
       ->required();
 }

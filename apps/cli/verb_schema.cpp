@@ -41,7 +41,7 @@ void add_schema(Application& application) {
         }
         return kDone;
       });
-  verb->add_option("what", a.what, "Kind of file")
+  verb->add_option("what", a.what, "Kind of file: bench, bench2, case or path")
       ->check(CLI::IsMember({"bench", "bench2", "case", "path"}))
       ->required();
   verb->add_flag("--defaults", a.defaults, "Print a file with every default instead of the schema");

@@ -42,7 +42,8 @@ int make_surface(const SurfaceArguments& arguments, const CommonOptions& options
 
 void add_surface(Application& application) {
   auto [verb, a] = application.add_verb<SurfaceArguments>(
-      "surface", "Sample the surface that an observer sees, as an even cloud with normals; or clean a camera's cloud",
+      "surface",
+      "Sample the surface that an observer sees as an evenly spaced cloud with normals, or clean a camera's cloud",
       "incise surface scene/scan.ply --planes 1 --approach 0 0 1 --camera scene/camera.json "
       "--plane-z-mm 74 -o tissue.ply",
       make_surface);

@@ -51,7 +51,7 @@ void describe(Visitor& v, RowFigures& f) {
   v.derived("drag_length_mm", setting.speed_mm_s * setting.dullness * f.calibration.reference_step_s,
             "Speed times dwell: how far the tool travels while it holds a tet.");
   v.derived("failure", row.is_failure, "Whether at least one specimen failed.");
-  v.derived("mean_abs_mm", row.mean_abs_mm, "Mean of the specimens' mean |errors|.");
+  v.derived("mean_abs_mm", row.mean_abs_mm, "Mean of the specimens' mean |error|.");
   v.derived("sd_abs_mm", row.sd_abs_mm, "Mean of their standard deviations.");
   v.derived("max_abs_mm", row.max_abs_mm, "Greatest |error| of any specimen that did not fail.");
   v.derived("mean_signed_mm", row.mean_signed_mm, "Mean signed error of the mid-lines.");

@@ -102,11 +102,12 @@ PictureMatch match_picture(const Contour& photographed, const Vec3& photo_approa
   match.objection =
       is_mirror_better
           ? fmt::format(
-                "a tumour edge that fits the simulated one when it is mirrored ({:.2f} mm apart, otherwise {:.2f} mm)",
+                "a tumour edge that fits the simulated one when it is mirrored ({:.2f} mm apart, but {:.2f} mm as "
+                "photographed)",
                 mirror.rms_mm, best.rms_mm)
           : fmt::format(
                 "a tumour edge that fits the simulated one when it is turned by {:.0f} degrees ({:.2f} mm apart, "
-                "otherwise {:.2f} mm)",
+                "but {:.2f} mm as photographed)",
                 far.degrees, far.rms_mm, best.rms_mm);
   return match;
 }

@@ -491,7 +491,9 @@ void describe(Visitor& v, RingForecast& f) {
   v.derived("residual_mm", f.residual_mm, "Error expected beyond that share, by sector from the start direction on.");
   v.derived("sd_mm", f.sd_mm,
             "Standard deviation of one photograph about the forecast, by sector, taking the share as exact.");
-  v.derived("level_sd_mm", f.level_sd_mm, "Standard deviation of the photograph's mean round the ring, likewise.");
+  v.derived(
+      "level_sd_mm", f.level_sd_mm,
+      "Standard deviation of the photograph's mean round the ring about the forecast, taking the share as exact.");
   std::vector<std::string> unlike(f.unlike.begin(), f.unlike.end());
   v.derived("unlike", unlike, "Covariates outside the observations' 10th to 90th percentile, except the outline.");
 }

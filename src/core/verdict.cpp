@@ -84,8 +84,8 @@ constexpr auto kRules = std::to_array<VerdictRule>({
      {},
      "",
      "",
-     "The cut was simulated by a rule other than the default (`cut.rule`). Cuts by that rule were compared with "
-     "nothing."},
+     "The cut was simulated by a rule other than the default (`cut.rule`), whose cuts have not been compared with "
+     "anything."},
     // Between a mesh of 8 000 tets (2.5 mm), whose cut is half as far off as it should be, and one of 42 000.
     {"mesh_resolution", kCaution, 1.5, "<=", "mm", "Mean edge length of the mesh along the path."},
     {"locking", kCaution, 0.49, "<=", "", "Poisson's ratio, where each tetrahedron keeps its own volume."},
@@ -155,7 +155,7 @@ void describe(Visitor& v, VerdictReason& reason) {
   v("value", reason.value, "The value that was found.");
   v("limit", reason.limit, "The limit that the value was compared with.");
   v("unit", reason.unit, "Unit of value and limit.");
-  v("at", reason.at, "Place of the reason.");
+  v("at", reason.at, "Place to which the reason refers.");
   v("message", reason.message, "One sentence for a person.");
 }
 
@@ -163,7 +163,7 @@ void describe(Visitor& v, Verdict& verdict) {
   VerdictStatus status = verdict.status();
   if (v.is_summary()) v("status", status, "Severity of the worst reason.");
   std::vector<VerdictReason> reasons = verdict.reasons_;
-  v("reasons", reasons, "Objections to the cut, worst first.");
+  v("reasons", reasons, "Reasons of the verdict, worst first.");
   if (!v.sets()) return;
   if (reasons.size() > kMostReasons)
     v.refuse({"reasons"}, fmt::format("{} reasons", reasons.size()), fmt::format("at most {}", kMostReasons));

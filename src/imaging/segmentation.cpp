@@ -253,10 +253,11 @@ void note_lost_volume(double sharp_mm3, Segmentation& result) {
   constexpr double kMostShare = 0.02;
   const double share = std::abs(result.occupancy_volume_mm3 - sharp_mm3) / std::max(result.occupancy_volume_mm3, sharp_mm3);
   if (!(result.smoothing_mm > 0.0) || !(share > kMostShare)) return;
-  result.verdict.add("scan", share,
-                     fmt::format("smoothing over {:g} mm changes the specimen's volume by {:.1f} %: that is too long "
-                                 "for so small or thin a body. A shorter smoothing_mm (about a voxel) keeps the shape",
-                                 result.smoothing_mm, 100.0 * share));
+  result.verdict.add(
+      "scan", share,
+      fmt::format("smoothing over {:g} mm changes the specimen's volume by {:.1f} %: this length is "
+                  "too great for so small or thin a body. A shorter smoothing_mm (about a voxel) keeps the shape",
+                  result.smoothing_mm, 100.0 * share));
 }
 
 }  // namespace

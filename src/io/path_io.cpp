@@ -76,7 +76,7 @@ void describe(Visitor& v, PathFile& file) {
   if (v.sets() && p.T_robot_sim) require_similarity(v, transform, *p.T_robot_sim);
   describe_stated(v, {"source_sha256", "SHA-256 of the path's source."}, p.source_sha256, is_hash,
                   "64 lower-case hex digits");
-  describe_stated(v, {"specimen_id", "Specimen for which the path was planned."}, p.specimen_id, is_specimen_id,
+  describe_stated(v, {"specimen_id", "Specimen on which the path was planned."}, p.specimen_id, is_specimen_id,
                   kSpecimenIdForm);
   static constexpr std::array<std::string_view, 2> kOrigins{"real", "virtual"};
   const Field origin{

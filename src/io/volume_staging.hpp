@@ -3,6 +3,8 @@
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
 namespace incise {
@@ -11,8 +13,7 @@ namespace incise {
 /// file) and then move out together.
 class StagingFolder {
  public:
-  explicit StagingFolder(const std::filesystem::path& target)
-      : target_(checked(target)), folder_(target.parent_path() / ("." + target.filename().string())) {}
+  explicit StagingFolder(const std::filesystem::path& target) : target_(target), folder_(folder_beside(target)) {}
 
   [[nodiscard]] std::filesystem::path file() const { return folder_.path() / target_.filename(); }
 
@@ -25,9 +26,15 @@ class StagingFolder {
   }
 
  private:
-  static const std::filesystem::path& checked(const std::filesystem::path& target) {
+  /// @throws DataError that names the target, not the hidden folder.
+  static AtomicFolder folder_beside(const std::filesystem::path& target) {
     require_writable(target);
-    return target;
+    try {
+      return AtomicFolder(target.parent_path() / ("." + target.filename().string()));
+    } catch (const DataError& error) {
+      throw DataError(target, "", fmt::format("no room for a hidden folder beside it ({})", error.what()),
+                      "a folder that can be written");
+    }
   }
   void move_one(const std::filesystem::path& from) const {
     std::error_code error;

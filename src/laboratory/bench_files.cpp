@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr const char* kFirstSchema = "incise.specimen/1";
 constexpr const char* kSecondSchema = "incise.specimen/2";
-constexpr const char* kTruth = "The truth about a virtual specimen, for tests. No planner may use it.";
+constexpr const char* kTruth = "The truth about a virtual specimen, for tests. No part of it may reach a planner.";
 constexpr const char* kVirtual = "Virtual: computed by incise's bench, no real tissue.";
 
 Json matrix(const Mat4& T) {

@@ -118,7 +118,7 @@ steps::StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const
   const KnownPhysicsCut made = cut_knowing_physics(body, plan, request.simulations, context.workers, context.monitor);
   steps::StepResult result_of;
   nlohmann::ordered_json& result = result_of.json;
-  result["note"] = "From the truth about a virtual specimen. No planner may use it.";
+  result["note"] = "From the truth about a virtual specimen. No part of it may reach a planner.";
   result["virtual"] = true;
   result["outcome"] = to_string(made.cut.outcome);
   result["compensation_outcome"] = to_string(made.correction.outcome);

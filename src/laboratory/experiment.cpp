@@ -21,7 +21,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <functional>
@@ -177,12 +176,18 @@ class Experiment {
   [[nodiscard]] double cost_of(const Trial& trial) const;
   [[nodiscard]] static double cost_of(RivalPath path) { return is_without_simulation(path) ? 0.5 : 0.9; }
   [[nodiscard]] double calibration_cost() const;
-  void report_end(const Trial* trial, double cost);
-  void report_part(const SpecimenTrial& specimen, double cost, double& told);
+  /// What was reported of a specimen on the way.
+  struct Reported {
+    double cost = 0.0;
+    std::size_t computed = 0;  ///< steps computed until then
+    bool is_rest_kept = true;  ///< nothing was computed since
+  };
+  /// @param is_kept  an earlier run had computed all of it.
+  void report_end(const Trial* trial, double cost, bool is_kept);
+  void report_part(const SpecimenTrial& specimen, double cost, Reported& reported);
   void tell();
   void run_trials(TrialRole first, TrialRole last);
-  /// @returns the part of its cost that was reported on the way.
-  double run_trial(Trial& trial);
+  Reported run_trial(Trial& trial);
   void assess(SpecimenTrial& specimen, Trial& trial);
   [[nodiscard]] ExperimentJson advice_of(SpecimenTrial& specimen, const std::string& step,
                                          const std::filesystem::path& file, const std::filesystem::path& folder,
@@ -193,9 +198,9 @@ class Experiment {
                                        const std::filesystem::path& folder, const std::filesystem::path& calibration,
                                        const std::string& step) const;
   [[nodiscard]] CaseVariant variant_of(RivalPath path, double youngs_modulus_kpa, const ExperimentJson& forecast) const;
-  /// @param told  grows by the cost of what was reported, as below.
-  void cut_rivals(SpecimenTrial& specimen, Trial& trial, double& told);
-  void cut_learning(SpecimenTrial& specimen, Trial& trial, double& told);
+  /// @param reported  grows by what was reported, as below.
+  void cut_rivals(SpecimenTrial& specimen, Trial& trial, Reported& reported);
+  void cut_learning(SpecimenTrial& specimen, Trial& trial, Reported& reported);
   [[nodiscard]] TrialCut cut_along(RivalPath path, SpecimenTrial& specimen, const StepAnswer& forecast) const;
   void calibrate();
   void compare();
@@ -220,10 +225,10 @@ class Experiment {
   double calibrated_kpa_ = 0.0;  // geometric mean of the calibrated specimens' moduli
   ExperimentJson calibration_, table_1_, comparison_;
   std::vector<std::string> calibration_commands_, comparison_commands_;
-  std::mutex mutex_;  // of what is not told yet, while specimens go side by side
+  std::mutex mutex_;  // of what is not reported yet, while specimens go side by side
   std::vector<std::string> warnings_;
   double done_ = 0.0;                                          // of the whole cost
-  std::atomic<bool> has_computed_ = false;                     // else all so far was kept by an earlier run
+  double kept_ = 0.0;                                          // likewise, of parts that an earlier run kept
   const std::thread::id caller_ = std::this_thread::get_id();  // it alone may tell the monitor
 };
 
@@ -359,17 +364,17 @@ void Experiment::run_trials(TrialRole first, TrialRole last) {
   for (Trial& trial : trials_)
     if (trial.role >= first && trial.role <= last) mine.push_back(&trial);
   workers_.for_each(mine.size(), 1, [&](std::size_t i) {
-    const double told = run_trial(*mine[i]);
-    report_end(mine[i], cost_of(*mine[i]) - told);
+    const Reported reported = run_trial(*mine[i]);
+    report_end(mine[i], cost_of(*mine[i]) - reported.cost, reported.is_rest_kept);
   });
   tell();
 }
 
 /// Notes that something has ended. Only the caller's thread reports to the monitor.
-void Experiment::report_end(const Trial* trial, double cost) {
+void Experiment::report_end(const Trial* trial, double cost, bool is_kept) {
   {
     const std::scoped_lock lock(mutex_);
-    done_ += cost;
+    (is_kept ? kept_ : done_) += cost;
     if (trial != nullptr) {
       for (const std::string& reason : refusals_of(*trial))
         warnings_.push_back(fmt::format("{} ended at {}", trial->name, reason));
@@ -378,10 +383,11 @@ void Experiment::report_end(const Trial* trial, double cost) {
   if (std::this_thread::get_id() == caller_) tell();
 }
 
-void Experiment::report_part(const SpecimenTrial& specimen, double cost, double& told) {
-  if (specimen.has_computed()) has_computed_ = true;
-  told += cost;
-  report_end(nullptr, cost);
+void Experiment::report_part(const SpecimenTrial& specimen, double cost, Reported& reported) {
+  const bool is_kept = specimen.computed() == reported.computed;
+  reported.computed = specimen.computed();
+  reported.cost += cost;
+  report_end(nullptr, cost, is_kept);
 }
 
 void Experiment::tell() {
@@ -390,8 +396,9 @@ void Experiment::tell() {
   warnings_.clear();
   double total = calibration_cost();
   for (const Trial& trial : trials_) total += cost_of(trial);
-  // Steps that an earlier run kept take no time: whoever estimates the time left from them would promise too much.
-  if (has_computed_ || done_ >= total) monitor_.progress("virtual specimens", std::min(1.0, done_ / total));
+  // Parts that an earlier run kept take no time and do not count: the time left would be estimated too short.
+  const double to_do = total - kept_;
+  monitor_.progress("virtual specimens", to_do > 1e-9 * total ? std::min(1.0, done_ / to_do) : 1.0);
 }
 
 /// Roughly how long a specimen takes, in times of one that is cut as planned and no more: measured on a machine with
@@ -414,8 +421,8 @@ double Experiment::calibration_cost() const {
   return specimens * (settings_.is_quick ? 1.2 : 3.0);
 }
 
-double Experiment::run_trial(Trial& trial) {
-  double told = 0.0;
+Experiment::Reported Experiment::run_trial(Trial& trial) {
+  Reported reported;
   Workers one(1);
   ExperimentSteps steps(root_ / trial.name, one, monitor_);
   VirtualLaboratory bench({trial.seed, trial.given, truth_ / trial.name, settings_.bench, context_.seed}, steps);
@@ -424,17 +431,17 @@ double Experiment::run_trial(Trial& trial) {
       bench);
   if (specimen.prepare(tool_)) {
     trial.planned = specimen.cut(specimen.planned_path(), "planned");
-    if (trial.role != TrialRole::Calibrate) report_part(specimen, 1.0, told);
+    if (trial.role != TrialRole::Calibrate) report_part(specimen, 1.0, reported);
     const bool goes_on = trial.planned.is_made && trial.role != TrialRole::Calibrate;
     const bool is_test = goes_on && trial.role == TrialRole::Test;
     if (goes_on) {
       assess(specimen, trial);
       correct(specimen, trial);
-      report_part(specimen, kCorrectionCost, told);
+      report_part(specimen, kCorrectionCost, reported);
     }
     if (goes_on && settings_.with_withheld_force) assess_without_pull(specimen, trial);
-    if (is_test) cut_rivals(specimen, trial, told);
-    if (is_test) cut_learning(specimen, trial, told);
+    if (is_test) cut_rivals(specimen, trial, reported);
+    if (is_test) cut_learning(specimen, trial, reported);
     if (is_test && settings_.with_known_physics) trial.known_physics = bench.known_physics().result;
   }
   trial.stretch_force_n = specimen.stretch_force_n();
@@ -442,8 +449,8 @@ double Experiment::run_trial(Trial& trial) {
   trial.registration_rmse_mm = specimen.registration_rmse_mm();
   trial.ended_at = specimen.ended_at();
   trial.commands = steps.lines();
-  if (steps.has_computed()) has_computed_ = true;
-  return told;
+  reported.is_rest_kept = steps.computed() == reported.computed;
+  return reported;
 }
 
 /// What would be advised before the robot moves. The corrected cut is made on the bench whatever it says: whether the
@@ -542,7 +549,7 @@ CaseVariant Experiment::variant_of(RivalPath path, double youngs_modulus_kpa, co
 }
 
 /// Cuts the same specimen along every rival's path.
-void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial, double& told) {
+void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial, Reported& reported) {
   StepAnswer forecast;
   if (settings_.with_rivals)
     forecast = forecast_of(specimen, specimen.case_file(), specimen.at("compensated"),
@@ -551,7 +558,7 @@ void Experiment::cut_rivals(SpecimenTrial& specimen, Trial& trial, double& told)
     trial.unlike = forecast.result.at("with_simulation").at("unlike").get<std::vector<std::string>>();
   for (const RivalPath path : rivals_) {
     trial.rivals.push_back({path, cut_along(path, specimen, forecast)});
-    report_part(specimen, cost_of(path), told);
+    report_part(specimen, cost_of(path), reported);
   }
 }
 
@@ -568,7 +575,7 @@ TrialCut Experiment::cut_along(RivalPath path, SpecimenTrial& specimen, const St
 }
 
 /// Cuts along what the first photographs alone forecast, without and with simulation.
-void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial, double& told) {
+void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial, Reported& reported) {
   for (const Learning& learning : learning_) {
     const std::string suffix = fmt::format("_{}", learning.photographs);
     const std::filesystem::path file =
@@ -587,7 +594,7 @@ void Experiment::cut_learning(SpecimenTrial& specimen, Trial& trial, double& tol
           name + ".yaml", forecast_variant(path, learning.tool, specimen.youngs_modulus_kpa(), forecast.result));
       made.cut = specimen.cut_again(variant, specimen.at(name), name, !is_without_simulation(path)).cut;
     }
-    report_part(specimen, kLearningCost, told);
+    report_part(specimen, kLearningCost, reported);
   }
 }
 
@@ -660,8 +667,7 @@ void Experiment::calibrate() {
   calibrated_kpa_ = mean_modulus_kpa(calibration_);
   if (!settings_.is_quick) table_1_ = of_all("table_1", CalibrationMethod::Paper, "table_1", "table_1.csv");
   calibration_commands_ = steps.lines();
-  if (steps.has_computed()) has_computed_ = true;
-  report_end(nullptr, calibration_cost());
+  report_end(nullptr, calibration_cost(), steps.computed() == 0);
 }
 
 void Experiment::compare() {

@@ -149,7 +149,7 @@ void describe(Visitor& v, PathResult& r) {
 }
 
 void describe(Visitor& v, PathPair& p) {
-  v("first", p.first, "Name of a path.");
+  v("first", p.first, "Name of the first path.");
   v("second", p.second, "Name of the second path.");
   v("compared", p.compared, "Specimens with closed rings along both paths, in the photographs.");
   v({"first_mm", "Mean |error| along the first path, mean over the compared specimens.", "mm"}, p.first_mm);

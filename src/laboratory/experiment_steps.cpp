@@ -159,8 +159,8 @@ StepAnswer ExperimentSteps::run(const ExperimentStep& step) {
   if (cache_.holds(step.name)) remove_own_products(step);
   cache_.remove(step.name);
   const StepAnswer answer = made_now(step, log);
+  ++computed_;
   if (answer.end == StepEnd::Unusable) return answer;
-  has_computed_ = true;
   const KeptAnswer kept{answer.end == StepEnd::Done, answer.result.dump(), products_of(step)};
   cache_.keep(step.name, key, kept);
   return {answer.end, Json::parse(kept.result)};

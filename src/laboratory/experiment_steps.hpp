@@ -37,8 +37,8 @@ class ExperimentSteps {
   /// The commands so far, in their order, as a shell would be given them.
   [[nodiscard]] const std::vector<std::string>& lines() const { return lines_; }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Whether the cache had no answer for at least one step so far.
-  [[nodiscard]] bool has_computed() const { return has_computed_; }
+  /// Number of steps so far for which the cache had no answer.
+  [[nodiscard]] std::size_t computed() const { return computed_; }
 
  private:
   class LogFile;
@@ -49,7 +49,7 @@ class ExperimentSteps {
   const Monitor& outer_;
   Cache cache_;
   std::vector<std::string> lines_;
-  bool has_computed_ = false;
+  std::size_t computed_ = 0;
 };
 
 }  // namespace incise::laboratory

@@ -190,7 +190,7 @@ void describe(Visitor& v, PairEffect& e) {
      "mm"},
     e.change_mm);
   describe_interval(v, {"change_95_mm", "95 % interval of change_mm.", "mm"}, e.change_95);
-  v("p", e.p, "Two-tailed p-value multiplied by the number of groups.");
+  v("p", e.p, "Two-tailed p-value of that change, multiplied by the number of groups.");
 }
 
 void describe(Visitor& v, FactorTable& t) {

@@ -87,7 +87,7 @@ class SpecimenTrial {
   [[nodiscard]] std::filesystem::path write_variant(const std::string& name, const CaseVariant& variant) const;
   /// Runs one more step in this specimen's folder, whose refusal is an answer.
   StepAnswer ask(const ExperimentStep& step) { return steps_.run(step); }
-  [[nodiscard]] bool has_computed() const { return steps_.has_computed(); }
+  [[nodiscard]] std::size_t computed() const { return steps_.computed(); }
 
   [[nodiscard]] std::filesystem::path at(const std::string& name) const { return steps_.folder() / name; }
   [[nodiscard]] std::filesystem::path case_file() const { return at("case.yaml"); }

@@ -14,7 +14,7 @@
 namespace incise::laboratory {
 namespace {
 
-constexpr const char* kCutTruth = "The truth about a virtual cut, for tests. No planner may use it.";
+constexpr const char* kCutTruth = "The truth about a virtual cut, for tests. No part of it may reach a planner.";
 
 double mean_abs(const std::vector<double>& errors) {
   double mean = 0.0;

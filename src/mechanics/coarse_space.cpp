@@ -238,8 +238,10 @@ void CoarseSpace::find_basis(std::size_t aggregate) {
     }
   }
   const Eigen::LLT<Mat6> factor(diagonal);
-  INCISE_REQUIRE(factor.info() == Eigen::Success,
-                 fmt::format("expected a positive definite matrix, found that it is not on aggregate {}", aggregate));
+  INCISE_REQUIRE(
+      factor.info() == Eigen::Success,
+      fmt::format("expected a positive definite matrix, found one that is not positive definite on aggregate {}",
+                  aggregate));
   basis_[aggregate] = factor.matrixL().solve(motions.transpose()).transpose();
   into_basis_[aggregate] = factor.matrixU() * into_motions;
 }

@@ -396,7 +396,7 @@ void describe(Visitor& v, RegistrationSettings& s) {
   v.internal("start", s.start, "One start; absent: a search over rotations.");
   v("rotations", s.rotations, "Starts of the search, spread evenly over all rotations.", {8.0, 2000.0});
   v("finish_with_icp", s.finish_with_icp, "Whether a point-to-plane refinement follows the drift.");
-  v("max_iterations", s.max_iterations, "Most iterations of the drift, and of the refinement after it.",
+  v("max_iterations", s.max_iterations, "Greatest number of iterations of the drift, and of the refinement after it.",
     {1.0, 100000.0});
   v("drift_points", s.drift_points, "A larger cloud enters the drift as about this many clusters.", {100.0});
   v({"settling_mm",

@@ -13,8 +13,8 @@ std::string kerf_section(const ReportData& data) {
   }
   std::string html = heading +
                      "<p class=\"lead\">All values are simulated. Depth is measured below the skin of "
-                     "the stretched, uncut tissue, along the approach. Lag and drift are the displacement of tissue, "
-                     "when it was cut, from its place there: "
+                     "the stretched, uncut tissue, along the approach. Lag and drift are how far tissue, when it was "
+                     "cut, was displaced from its place in the stretched, uncut tissue: "
                      "along the tool's course, and across it.</p>\n<div class=\"figures\">\n";
   for (const LinePlot& plot : data.kerf_plots) html += "<figure>" + line_plot_svg(plot) + "</figure>\n";
   for (const std::string& figure : data.kerf_figures) html += "<figure>" + figure + "</figure>\n";

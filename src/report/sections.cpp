@@ -180,8 +180,8 @@ std::string program_section(const ReportData& data) {
   if (!data.checks.empty()) html += "<h3>Safety checks</h3>\n" + check_table(data.checks);
   if (!data.program_figure.empty()) {
     html +=
-        "<h3>As the player ran it</h3>\n<p>The program as written, run by incise's own kinematics and a model of "
-        "the controller, not by an arm.</p>\n<div class=\"figures\">\n<figure>" +
+        "<h3>As the player ran it</h3>\n<p>The program as written, run with incise's own kinematics and a model of "
+        "the controller, not on an arm.</p>\n<div class=\"figures\">\n<figure>" +
         data.program_figure + "</figure>\n</div>\n" + value_table(data.replay);
   }
   if (!data.program_text.empty()) {

@@ -60,7 +60,7 @@ class Playing {
     if (replay_.outcome != ReplayOutcome::Completed || replay_.max_joint_speed_share <= 1.0 + kRounding) return;
     end(ReplayOutcome::JointSpeed, fastest_line_);
     replay_.reason =
-        fmt::format("{} turns at {:.3g} times its greatest speed",
+        fmt::format("{} would turn at {:.3g} times its speed limit",
                     arm_.joint_names[static_cast<std::size_t>(fastest_joint_)], replay_.max_joint_speed_share);
   }
 

@@ -59,8 +59,9 @@ Json fields() {
   json["verdict"] = {{"type", "object"},
                      {"required", {"status", "reasons", "digest_sha256"}},
                      {"description",
-                      "Verdict on the simulated cut along the path, with a digest of both. Written by incise: a path "
-                      "without a verdict, or changed after it, counts as not simulated"}};
+                      "Verdict on the simulated cut along the path; its digest seals the path and the verdict. Written "
+                      "by incise: a path that has no verdict, or was changed after the verdict was written, counts as "
+                      "not simulated"}};
   return json;
 }
 

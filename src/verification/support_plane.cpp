@@ -66,7 +66,7 @@ VerificationCheck support_penetration(const CheckContext& context) {
 VerificationCheck support_balance(const CheckContext& context) {
   VerificationCheck check = described(
       "Block clamped at one end, pressed onto a support plane: force carried by clamp and plane divided by weight and "
-      "load: 1 plus the largest component of the residual",
+      "load, as 1 plus the largest component of the difference",
       "balance of forces", "-", 1.0, kBalanceTolerance);
   check.found = 1.0;
   CheckCurve line{"weight and load", {}, {}, true};

@@ -132,8 +132,10 @@ void describe(Visitor& v, Assessment& a) {
     v.begin({"expected_gain_mm", "Expected gain of the correction.", "mm"});
     v("mean", gain->mean_mm, "Mean over scenarios and residuals.");
     v("sd", gain->sd_mm, "Standard deviation over scenarios and residuals.");
-    describe_interval(v, {"middle_80", "Middle 80 % of the gain, likewise.", "mm"}, gain->interval_80);
-    describe_interval(v, {"middle_95", "Middle 95 % of the gain, likewise.", "mm"}, gain->interval_95);
+    describe_interval(v, {"middle_80", "Middle 80 % of the gain over scenarios and residuals.", "mm"},
+                      gain->interval_80);
+    describe_interval(v, {"middle_95", "Middle 95 % of the gain over scenarios and residuals.", "mm"},
+                      gain->interval_95);
     v.end();
   }
   v("p_worse", a.eligibility.p_worse, "Probability that the corrected cut is the worse one.");

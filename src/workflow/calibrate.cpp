@@ -351,7 +351,8 @@ class CalibrationRunner {
                                       [](const SimulatedProfile& profile) { return !profile.signed_error_mm.empty(); });
     monitor_.message(
         Severity::Notice,
-        fmt::format("{}: {} of {} closed simulated rings have no inner edge at the skin; their mid-line is used",
+        fmt::format("{}: {} of {} closed simulated rings have no inner edge at the skin; it is estimated from their "
+                    "mid-line",
                     specimen.name, specimen.read_by_midline, closed));
   }
 

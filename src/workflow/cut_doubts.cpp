@@ -179,8 +179,8 @@ Verdict verdict_before_cut(const Case& settings, const TissueModel& model, const
   if (settings.cut.rule != CutSettings{}.rule) {
     verdict.add(
         "cut_rule", std::nullopt,
-        fmt::format("the cut was simulated by rule {} (cut.rule), whose cuts were compared with nothing. Where the "
-                    "tool will cut is better known with rule {}",
+        fmt::format("the cut was simulated by rule {} (cut.rule), whose cuts have not been compared with anything. "
+                    "Where the tool will cut is better known with rule {}",
                     to_string(settings.cut.rule), to_string(CutSettings{}.rule)));
   }
   const double coarsest_mm = *verdict_rule("mesh_resolution").limit;

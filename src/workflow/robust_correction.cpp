@@ -254,15 +254,16 @@ void warn_unless_converged(const RingForecaster& forecaster, Monitor& monitor) {
 
 void require_usable_share(const std::filesystem::path& file, double simulated_share, Monitor& monitor) {
   if (!contains(kUsableShare, simulated_share))
-    throw DataError(file, "fitted",
-                    fmt::format("photographs that differ {:.2f} times as much as the simulations", simulated_share),
-                    fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
-                    "The simulation predicts nothing about these specimens");
+    throw DataError(
+        file, "fitted",
+        fmt::format("a simulated share of {:.2f} (photographed differences per simulated difference)", simulated_share),
+        fmt::format("a share from {} to {}", kUsableShare.least, kUsableShare.most),
+        "The simulation predicts nothing about these specimens");
   if (!contains(kLikelyShare, simulated_share))
-    monitor.message(Severity::Warning,
-                    fmt::format("forecast: photographs differ {:.2f} times as much as the simulations: the simulation "
-                                "misleads",
-                                simulated_share));
+    monitor.message(
+        Severity::Warning,
+        fmt::format("forecast: photographed differences are {:.2f} of the simulated ones. The simulation misleads",
+                    simulated_share));
 }
 
 RobustCorrection correct_robustly(const Case& settings, Inputs& inputs, Cache& cache, const Study& done,

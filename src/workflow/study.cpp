@@ -308,7 +308,7 @@ class Runner {
                               viscous_terms(settings_.material));
     const std::optional<std::uint64_t> held = held_memory_bytes();
     monitor_.message(Severity::Notice,
-                     fmt::format("tissue: {} tets, {} vertices; to stretch and cut takes about {:.0f} MB{}",
+                     fmt::format("tissue: {} tets, {} vertices; stretching and cutting it takes about {:.0f} MB{}",
                                  mesh.tets.size(), mesh.vertices.size(), megabytes(needed),
                                  held ? fmt::format(" beyond the {:.0f} MB in use", megabytes(*held)) : ""));
     const std::optional<std::uint64_t> available = available_memory_bytes();

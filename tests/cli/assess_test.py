@@ -175,8 +175,8 @@ class AssessTest(CommandTest):
         small_calibration.write(self.calibration, contrary)
         done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
         self.assertEqual(done.returncode, BAD_DATA, done.stderr)
-        self.assertRegex(done.stderr, "calibration.json: fitted: found photographs that differ -[0-9.]+ times as much as "
-                                      "the simulations")
+        self.assertRegex(done.stderr, "calibration.json: fitted: found a simulated share of -[0-9.]+ .photographed "
+                                      "differences per simulated difference.")
         small_calibration.write(self.calibration, farther_out)
         # A correction that expects it itself is assessed, too.
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2, "residual_mm": [1.5]}})

@@ -204,7 +204,7 @@ TEST(Player, AJointThatIsSentFasterThanItCanTurnIsAnOutcome) {
   EXPECT_EQ(fast.outcome, ReplayOutcome::JointSpeed);
   EXPECT_GT(fast.max_joint_speed_share, 1.0);
   EXPECT_GT(fast.line, 20u);
-  EXPECT_THAT(fast.reason, HasSubstr("times its greatest speed"));
+  EXPECT_THAT(fast.reason, HasSubstr("times its speed limit"));
 }
 
 TEST(Player, ATipThatLeavesItsCourseIsAnOutcome) {

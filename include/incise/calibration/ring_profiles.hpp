@@ -17,7 +17,7 @@ struct PhotographedProfile {
 inline void describe(Visitor& v, PhotographedProfile& p) {
   v({"constant_mm", "Mean signed error of all photographs.", "mm"}, p.constant_mm);
   v({"mean_mm", "The same by sector: a list for compensation.photographed_mm.", "mm"}, p.mean_mm);
-  v({"smoothed_mm", "The waves of mean_mm of at most four per turn.", "mm"}, p.smoothed_mm);
+  v({"smoothed_mm", "mean_mm, reduced to waves of at most four per turn.", "mm"}, p.smoothed_mm);
 }
 
 /// What photographs show beyond the simulation and its bias. A real cut along the planned path is expected to err by

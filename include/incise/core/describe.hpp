@@ -74,7 +74,7 @@ class Visitor;
 ///
 ///     inline void describe(Visitor& v, Bond& b) {
 ///       v("tet", b.tet, "The tet that is held.");
-///       v({"offset_mm", "Of the tet's centroid from the tool's tip when first touched.", "mm"}, b.offset_mm);
+///       v({"offset_mm", "Offset of the tet's centroid from the tool's tip at first contact.", "mm"}, b.offset_mm);
 ///     }
 ///
 /// Files, keys, comparison, schema and reports are visitors of this description, so none of them can miss a field.

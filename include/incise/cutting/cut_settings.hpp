@@ -108,8 +108,8 @@ inline void describe_effect(Visitor& v, CutSettings& s) {
   v({"reference_depth_mm", "Depth of the real tool's tip for which dullness holds.", "mm"}, s.reference_depth_mm,
     {0.5, 50.0});
   v("power_exponent", s.power_exponent,
-    "Contact cuts as fast as this power of the relative energy per area of the cut: plan.power_w / (plan.speed_mm_s "
-    "plan.depth_mm) over that of the references. 0: power, speed and depth have no effect.",
+    "Exponent m: contact cuts E^m times as fast, where E is the energy per area of the cut, plan.power_w / "
+    "(plan.speed_mm_s plan.depth_mm), divided by that of the references. 0: power, speed and depth have no effect.",
     {0.0, 10.0});
   v.internal("real_speed_mm_s", s.real_speed_mm_s, "Speed of the real tool.", kPositive);
   v.internal("depth_mm", s.depth_mm, "Depth of the real tool's tip.", kPositive);
@@ -124,7 +124,8 @@ inline void describe_steps(Visitor& v, CutSettings& s) {
      "Rules tets and lattice: tool travel in one simulation step, at most the tool's diameter or thickness.", "mm"},
     s.advance_per_step_mm, {0.01, 10.0});
   v({"reach_mm",
-     "Rules tets and paper: a tetrahedron is in contact within the tool's radius plus this of the tool's core.", "mm"},
+     "Rules tets and paper: a tetrahedron nearer to the tool's core than the tool's radius plus this is in contact.",
+     "mm"},
     s.reach_mm, {0.0, 5.0});
   v({"bond_stiffness_kpa_mm2",
      "Rules tets and paper: pull of the tool on tissue that it holds, per volume and offset; 0: no drag.", "kPa/mm2"},
@@ -136,7 +137,7 @@ inline void describe_steps(Visitor& v, CutSettings& s) {
   v("rule", s.rule, "What is cut: whole tetrahedra, the points of a lattice, or tetrahedra as the paper does it.");
   v("contact_count", s.contact_count,
     "Rule paper: what happens to a tetrahedron's count of steps when contact is lost.");
-  v({"kernel_radius_mm", "Rule lattice: distance from its core (a needle's axis) within which the tool acts.", "mm"},
+  v({"kernel_radius_mm", "Rule lattice: the tool acts within this distance of its core (a needle's axis).", "mm"},
     s.kernel_radius_mm, {0.5, 5.0});
   v({"dose_length_mm",
      "Rule lattice: value of speed times dullness times reference_step_s at which reference tissue that does not move "

@@ -57,7 +57,8 @@ inline void describe(Visitor& v, KerfBody& b) {
   v({"volume_mm3", "Volume that the surface encloses.", "mm3"}, b.volume_mm3);
   v.bulk("surface", b.surface, "The boundary, oriented outwards.");
   v.end();
-  v("live_skin", b.live_skin, "Edges and points where the skin of the remaining tissue touches itself.");
+  v("live_skin", b.live_skin,
+    "Triangles, open edges and places where sheets touch, of the skin of the remaining tissue.");
 }
 
 /// Depth of the kerf along the tool's path.
@@ -107,8 +108,8 @@ struct DeepMargin {
 };
 inline void describe(Visitor& v, DeepMargin& m) {
   v({"nearest", "Least distance between kerf and tumour; negative: the kerf enters the tumour.", "mm"}, m.nearest_mm);
-  v({"beside", "Least distance to the kerf beside the tumour.", "mm"}, m.beside_mm);
-  v({"beneath", "Least distance to the kerf beneath the tumour.", "mm"}, m.beneath_mm);
+  v({"beside", "Least distance between the tumour and the kerf beside it.", "mm"}, m.beside_mm);
+  v({"beneath", "Least distance between the tumour and the kerf beneath it.", "mm"}, m.beneath_mm);
   v({"floor_below", "How much deeper the bottom of the kerf lies than the tumour.", "mm"}, m.floor_below_mm);
 }
 

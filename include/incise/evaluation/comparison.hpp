@@ -95,7 +95,8 @@ inline void describe(Visitor& v, PooledTests& t) {
     "Number of independent values that carry as much information as the points before.");
   v("n_effective_after", t.n_effective_after,
     "Number of independent values that carry as much information as the points after.");
-  v("block_bootstrap", t.bootstrap, "The same test, but with the correlation of neighbours on a contour.");
+  v("block_bootstrap", t.bootstrap,
+    "Block bootstrap of the same difference, which keeps the correlation of neighbours on a contour.");
 }
 
 /// Tests by specimen: each specimen counts once, by its mean error.
@@ -128,7 +129,8 @@ inline void describe(Visitor& v, SpecimenTests& t) {
   v("paired", paired, "Test of pairs; absent if the specimens are not pairs.");
   t.paired = paired ? std::optional(paired->test) : std::nullopt;
   v("effect", t.effect, "Effect size; absent if it cannot be computed.");
-  v("fewest_specimens", t.fewest, "Fewest specimens in each group, or pairs, with which this effect is detected.");
+  v("fewest_specimens", t.fewest,
+    "Fewest specimens in each group, or pairs, that detect this effect with the probability `power`.");
 }
 
 /// Result of compare: the errors of incisions before and after a change.

@@ -87,7 +87,8 @@ inline void describe(Visitor& v, MeshingResult& m) {
   v("refinements", m.refinements, "Number of refinements tried to meet count and volume.");
   v("improvements", m.improvements, "Number of improvements tried to meet the angle.");
   v("dropped_bodies", m.dropped_bodies, "Number of smaller components of the occupancy that were left out.");
-  v("dropped_volume_mm3", m.dropped_volume_mm3, "Volume that was left out.");
+  v("dropped_volume_mm3", m.dropped_volume_mm3,
+    "Volume of the occupancy that was left out: these components and faint specks.");
   v("dropped_tets", m.dropped_tets, "Number of tets left out because no face joins them to the rest.");
   v("phases", m.phases, "Time by phase.");
   v("wall_s", m.wall_s, "Time that meshing took.");

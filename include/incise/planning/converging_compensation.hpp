@@ -107,8 +107,8 @@ inline void describe(Visitor& v, ConvergenceSettings& s) {
     "moved by more_move_mm, out and in, then by twice that.",
     kNotNegative);
   v({"more_move_mm",
-     "First move of each waypoint in more_simulations: enough for other tissue to hang on at the seam, far less than "
-     "the electrode's radius.",
+     "First move of each waypoint in more_simulations: enough that other tissue holds the piece at the seam, far "
+     "less than the electrode's radius.",
      "mm"},
     s.more_move_mm, kPositive);
   v({"floor_mm", "Mean |error| that the mesh alone causes, in tissue that cannot move.", "mm"}, s.floor_mm,

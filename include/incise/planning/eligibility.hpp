@@ -37,7 +37,9 @@ inline void describe(Visitor& v, SpecimenDistance& d) {
   v("name", d.name, "Name of the quantity.");
   v("value", d.value, "Value for this specimen.");
   v("calibrated_mean", d.mean, "Mean over the calibration's specimens; geometric for a logarithmic quantity.");
-  v("in_sd", d.in_sd, "Value minus mean, in standard deviations of the prediction for a next specimen.");
+  v("in_sd", d.in_sd,
+    "Value minus mean (of logarithms for a logarithmic quantity), in standard deviations of the prediction for a next "
+    "specimen.");
   v.internal("is_better_below", d.is_better_below, "A value below the mean is in favour of the specimen.");
   v.internal("degrees", d.degrees, "Degrees of freedom of that standard deviation.");
 }

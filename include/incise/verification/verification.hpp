@@ -65,7 +65,7 @@ inline void describe(Visitor& v, VerificationCheck& c) {
   v("tolerance", c.tolerance, "Tolerance of the criterion.");
   v("criterion", c.criterion, "Condition under which the check passes.");
   v("unit", c.unit, "Unit of expected, found and tolerance.");
-  v("what", c.what, "Question that the check answers, in one sentence.");
+  v("what", c.what, "What the check compares, in one sentence.");
   v("source", c.source, "Source of the expected value.");
   v("note", c.note, "Further values, or why the check failed.");
   v({"wall_s", "Duration of the check.", "s"}, c.wall_s);

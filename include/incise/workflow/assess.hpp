@@ -50,7 +50,7 @@ void describe(Visitor& v, Assessment& a);
                                 Monitor& monitor);
 
 inline constexpr const char* kVirtualCalibration =
-    "the calibration is of virtual specimens and this one is real: the drag of its tissue was never measured";
+    "the calibration is of virtual specimens and this one is real: drag was never measured on real tissue";
 /// Returns a judgement of a real specimen as a calibration of synthetic bodies allows it: at best to cut as planned,
 /// with kVirtualCalibration among the reasons.
 [[nodiscard]] Eligibility by_virtual_calibration(Eligibility judged);
