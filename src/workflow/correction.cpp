@@ -61,8 +61,8 @@ double mean_shortfall_mm(const Case& settings, const SimulatedCut& cut) {
   if (shares.empty()) return 0.0;
   const double limit = *verdict_rule("depth").limit;
   double missing = 0.0;
-  for (const DepthShare& one : shares) missing += std::max(0.0, limit - one.share);
-  return settings.plan.depth_mm * missing / static_cast<double>(shares.size());
+  for (const DepthShare& one : shares) missing += one.planned_mm * std::max(0.0, limit - one.share);
+  return missing / static_cast<double>(shares.size());
 }
 
 /// Verdict on a cut by objections that another path may remove. Heat is not among them: it follows from the intended
