@@ -6,7 +6,6 @@
 #include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 

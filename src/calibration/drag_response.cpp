@@ -56,23 +56,15 @@ void sort_by_drag_length(std::vector<SimulatedProfile>& profiles) {
             [](const SimulatedProfile& a, const SimulatedProfile& b) { return a.drag_length_mm < b.drag_length_mm; });
 }
 
-struct KnotsFound {
-  std::vector<SimulatedProfile> knots;
-  bool is_ended_by_failure = false;
-};
-
 /// The rings at the reference stiffness before the first that did not close. @pre sorted.
-KnotsFound knots_of(const std::vector<SimulatedProfile>& profiles) {
-  KnotsFound found;
+std::vector<SimulatedProfile> knots_of(const std::vector<SimulatedProfile>& profiles) {
+  std::vector<SimulatedProfile> knots;
   for (const SimulatedProfile& profile : profiles) {
     if (!is_reference_stiffness(profile.stiffness_factor)) continue;
-    if (profile.signed_error_mm.empty()) {
-      found.is_ended_by_failure = true;
-      break;  // a longer drag that closed again would be luck
-    }
-    found.knots.push_back(profile);
+    if (profile.signed_error_mm.empty()) break;  // a longer drag that closed again would be luck
+    knots.push_back(profile);
   }
-  return found;
+  return knots;
 }
 
 }  // namespace
@@ -83,15 +75,13 @@ bool is_reference_stiffness(double stiffness_factor) {
 
 bool DragResponse::can_be_made_of(std::vector<SimulatedProfile> profiles) {
   sort_by_drag_length(profiles);
-  return knots_of(profiles).knots.size() >= 2;
+  return knots_of(profiles).size() >= 2;
 }
 
 DragResponse::DragResponse(std::vector<SimulatedProfile> profiles) {
   require_profiles(profiles);
   sort_by_drag_length(profiles);
-  KnotsFound found = knots_of(profiles);
-  knots_ = std::move(found.knots);
-  is_ended_by_failure_ = found.is_ended_by_failure;
+  knots_ = knots_of(profiles);
   INCISE_REQUIRE(
       knots_.size() >= 2,
       fmt::format("expected at least two closed simulated rings before the first open one, found {}", knots_.size()));

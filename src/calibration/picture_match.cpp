@@ -19,13 +19,7 @@ constexpr double kBetterBy = 2.0;  // a mirror image or a far turn has to fit th
 Contour centred_in_view(const Contour& edge, const Vec3& approach, Vec2& middle) {
   INCISE_REQUIRE(edge.is_closed && edge.points.size() >= 3,
                  fmt::format("expected a closed tumour edge of at least 3 points, found {}", edge.points.size()));
-  const ViewFrame view = view_along(approach);
-  Contour flat;
-  for (const Vec3& p : edge.points) {
-    const Vec3 seen = view.to_view(p);
-    flat.points.emplace_back(seen.x(), seen.y(), 0.0);
-  }
-  flat = resample(flat, kEdgePoints);
+  Contour flat = resample(flat_in_view(edge, view_along(approach)), kEdgePoints);
   const Vec3 centre = curve_centroid(flat);
   for (Vec3& p : flat.points) p -= centre;
   middle = centre.head<2>();

@@ -13,16 +13,6 @@ namespace {
 
 constexpr double kProfileStepMm = 0.1;
 
-/// The contour as the camera sees it, without heights.
-Contour flat_in_view(const Contour& contour, const ViewFrame& view) {
-  Contour flat{.points = {}, .is_closed = contour.is_closed};
-  for (const Vec3& p : contour.points) {
-    const Vec3 seen = view.to_view(p);
-    flat.points.emplace_back(seen.x(), seen.y(), 0.0);
-  }
-  return flat;
-}
-
 /// Sectors of equal angle about the middle of the tumour edge, as the camera sees them.
 class SectorRing {
  public:

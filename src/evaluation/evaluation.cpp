@@ -6,8 +6,6 @@
 #include <incise/evaluation/hu.hpp>
 #include <incise/evaluation/level_loop.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

@@ -7,16 +7,6 @@
 namespace incise {
 namespace {
 
-Contour flattened(const Contour& contour, const Vec3& approach) {
-  const ViewFrame view = view_along(approach);
-  Contour flat{.points = {}, .is_closed = contour.is_closed};
-  for (const Vec3& p : contour.points) {
-    const Vec3 q = view.to_view(p);
-    flat.points.emplace_back(q.x(), q.y(), 0.0);
-  }
-  return flat;
-}
-
 double farthest(const Contour& from, const Contour& to, double step_mm) {
   double result = 0.0;
   for (const Vec3& p : from.points) result = std::max(result, nearest_on(to, p).distance_mm);
@@ -30,8 +20,9 @@ HausdorffDistance hausdorff_distance(const Contour& first, const Contour& second
                                      double step_mm) {
   INCISE_REQUIRE(first.points.size() >= 2 && second.points.size() >= 2, "expected contours of at least 2 points");
   INCISE_REQUIRE(step_mm > 0.0, "expected a step above 0");
-  const Contour a = flattened(first, approach);
-  const Contour b = flattened(second, approach);
+  const ViewFrame view = view_along(approach);
+  const Contour a = flat_in_view(first, view);
+  const Contour b = flat_in_view(second, view);
   return {farthest(a, b, step_mm), farthest(b, a, step_mm)};
 }
 

@@ -111,6 +111,11 @@ ViewFrame view_along(const Vec3& approach) {
   return view;
 }
 
+Contour flat_in_view(Contour contour, const ViewFrame& view) {
+  for (Vec3& p : contour.points) p = Vec3(view.x.dot(p), view.y.dot(p), 0.0);
+  return contour;
+}
+
 double signed_area_mm2(const Contour& contour, const Vec3& approach) {
   const std::vector<Vec2> flat = flat_points(contour, approach);
   if (flat.size() < 3) return 0.0;

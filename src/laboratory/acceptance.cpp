@@ -1,7 +1,7 @@
 #include "laboratory/experiment_tables.hpp"
 #include "laboratory/trial_on_bench.hpp"
 
-#include <incise/core/error.hpp>
+#include <incise/core/batch_monitor.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/folder_lock.hpp>
 #include <incise/io/json_file.hpp>
@@ -11,12 +11,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <mutex>
-#include <ostream>
-#include <thread>
 
 namespace incise {
 namespace {
@@ -129,15 +124,10 @@ nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const st
     trials[i].role = laboratory::TrialRole::Test;
     if (settings.speed_mm_s) trials[i].given.emplace_back("speed_mm_s", *settings.speed_mm_s);
   }
-  std::mutex mutex;
-  std::size_t done = 0;
-  const std::thread::id caller = std::this_thread::get_id();
+  BatchProgress progress(trials.size(), "virtual specimens", monitor);
   workers.for_each(trials.size(), 1, [&](std::size_t i) {
     cut_twice(settings, output, run.seed, monitor, trials[i], rows[i]);
-    const std::scoped_lock guard(mutex);
-    ++done;
-    if (std::this_thread::get_id() == caller)
-      monitor.progress("virtual specimens", static_cast<double>(done) / static_cast<double>(trials.size()));
+    progress.note(i, 1.0);
   });
   Rows result;
   result["specimen_is"] = "virtual";

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ostream>
+#include <array>
 
 namespace incise::laboratory {
 namespace {
@@ -113,61 +113,42 @@ AdviceJson close_margin_json(const std::vector<AdvisedSpecimen>& specimens) {
           {"bins", std::move(bins)}};
 }
 
-/// A prediction, and the photographed value; absent: not predicted, or not measured.
+/// A predicted interval and the photographed value; absent: not predicted, or not measured.
 struct Foretold {
+  const char* of;
+  double level;
   std::optional<Interval> interval;
   std::optional<double> shown;
 };
-struct ForetoldInterval {
-  const char* of;
-  double level;
-  Foretold (*in)(const AdvisedSpecimen&);
-};
 
-std::optional<double> photographed_gain_mm(const AdvisedSpecimen& s) {
-  if (!s.planned.photographed_mm || !s.corrected.photographed_mm) return std::nullopt;
-  return *s.planned.photographed_mm - *s.corrected.photographed_mm;
+std::array<Foretold, 6> foretold_of(const AdvisedSpecimen& s) {
+  std::optional<double> gain;
+  if (s.planned.photographed_mm && s.corrected.photographed_mm)
+    gain = *s.planned.photographed_mm - *s.corrected.photographed_mm;
+  return {{{"planned", 0.80, s.planned.error_80, s.planned.photographed_mm},
+           {"planned", 0.95, s.planned.error_95, s.planned.photographed_mm},
+           {"corrected", 0.80, s.corrected.error_80, s.corrected.photographed_mm},
+           {"corrected", 0.95, s.corrected.error_95, s.corrected.photographed_mm},
+           {"gain", 0.80, s.gain_80, gain},
+           {"gain", 0.95, s.gain_95, gain}}};
 }
 
-constexpr ForetoldInterval kForetold[] = {{"planned", 0.80,
-                                           [](const AdvisedSpecimen& s) {
-                                             return Foretold{s.planned.error_80, s.planned.photographed_mm};
-                                           }},
-                                          {"planned", 0.95,
-                                           [](const AdvisedSpecimen& s) {
-                                             return Foretold{s.planned.error_95, s.planned.photographed_mm};
-                                           }},
-                                          {"corrected", 0.80,
-                                           [](const AdvisedSpecimen& s) {
-                                             return Foretold{s.corrected.error_80, s.corrected.photographed_mm};
-                                           }},
-                                          {"corrected", 0.95,
-                                           [](const AdvisedSpecimen& s) {
-                                             return Foretold{s.corrected.error_95, s.corrected.photographed_mm};
-                                           }},
-                                          {"gain", 0.80,
-                                           [](const AdvisedSpecimen& s) {
-                                             return Foretold{s.gain_80, photographed_gain_mm(s)};
-                                           }},
-                                          {"gain", 0.95, [](const AdvisedSpecimen& s) {
-                                             return Foretold{s.gain_95, photographed_gain_mm(s)};
-                                           }}};
-
-/// Returns how often intervals of `assess` contain the photographed values.
+/// Returns how often intervals of `assess` contain the photographed values. @pre at least one specimen.
 AdviceJson intervals_json(const std::vector<AdvisedSpecimen>& specimens) {
   AdviceJson list = AdviceJson::array();
-  for (const ForetoldInterval& one : kForetold) {
+  const std::array<Foretold, 6> kinds = foretold_of(specimens.front());
+  for (std::size_t k = 0; k < kinds.size(); ++k) {
     std::vector<Forecast> held;
     for (const AdvisedSpecimen& specimen : specimens) {
-      const Foretold found = one.in(specimen);
+      const Foretold found = foretold_of(specimen)[k];
       if (!found.interval || !found.shown) continue;
       const bool is_held = *found.shown >= found.interval->low && *found.shown <= found.interval->high;
-      held.push_back({one.level, is_held, specimen.series});
+      held.push_back({found.level, is_held, specimen.series});
     }
     if (held.empty()) continue;
     const ReliabilityBin all = reliability(held, 1).bins.front();
-    list.push_back({{"of", one.of},
-                    {"level", one.level},
+    list.push_back({{"of", kinds[k].of},
+                    {"level", kinds[k].level},
                     {"cuts", all.forecasts},
                     {"held", all.happened},
                     {"share", all.share},
@@ -225,11 +206,6 @@ LinePlot reliability_plot(const AdviceJson& margin) {
   plot.y_label = "share in which it happened";
   plot.series = {std::move(seen), {"as stated", {0.0, 1.0}, {0.0, 1.0}, true}};
   return plot;
-}
-
-void write_svg(const std::filesystem::path& file, const LinePlot& plot) {
-  const std::string svg = line_plot_svg(plot);
-  write_atomically(file, [&svg](std::ostream& out) { out << svg; });
 }
 
 }  // namespace
@@ -338,9 +314,9 @@ AdviceJson hold_advice_against_truth(const std::vector<Trial>& trials, const std
 }
 
 void draw_advice(const std::filesystem::path& folder, const AdviceJson& advice) {
-  if (advice.at("auc").is_object()) write_svg(folder / "roc.svg", roc_plot(advice));
+  if (advice.at("auc").is_object()) write_atomically(folder / "roc.svg", line_plot_svg(roc_plot(advice)));
   if (advice.at("close_margin").is_object())
-    write_svg(folder / "reliability.svg", reliability_plot(advice.at("close_margin")));
+    write_atomically(folder / "reliability.svg", line_plot_svg(reliability_plot(advice.at("close_margin"))));
 }
 
 }  // namespace incise::laboratory

@@ -4,7 +4,6 @@
 #include <incise/io/json_file.hpp>
 #include <incise/report/figures.hpp>
 #include <incise/report/number_text.hpp>
-#include <incise/storage/calibration_file.hpp>
 #include <incise/storage/evaluation_file.hpp>
 
 #include <fmt/format.h>

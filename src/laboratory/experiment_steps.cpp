@@ -4,7 +4,6 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/entry_folder.hpp>
 #include <incise/io/input_file.hpp>
-#include <incise/io/json_file.hpp>
 
 #include <fmt/format.h>
 

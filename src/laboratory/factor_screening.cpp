@@ -2,6 +2,7 @@
 #include "laboratory/factor_table.hpp"
 #include "laboratory/trial_on_bench.hpp"
 
+#include <incise/core/batch_monitor.hpp>
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/evaluation/error_profile.hpp>
@@ -20,8 +21,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <mutex>
-#include <thread>
 
 namespace incise {
 namespace {
@@ -157,16 +156,11 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
     for (const second_bench::Factor factor : factors_of(r)) bits |= 1U << static_cast<unsigned>(factor);
     return fmt::format("{:04x}", bits);
   };
-  std::mutex mutex;
-  std::size_t done = 0;
-  const std::thread::id caller = std::this_thread::get_id();
+  BatchProgress progress(cuts.size(), "virtual cuts", monitor);
   workers.for_each(cuts.size(), 1, [&](std::size_t i) {
     const std::size_t s = i / runs, r = i % runs;
     cuts[i] = cut_one(settings, output, run.seed + s, specimen_name(s), run_name(r), factors_of(r), monitor);
-    const std::scoped_lock guard(mutex);
-    ++done;
-    if (std::this_thread::get_id() == caller)
-      monitor.progress("virtual cuts", static_cast<double>(done) / static_cast<double>(cuts.size()));
+    progress.note(i, 1.0);
   });
   std::vector<std::vector<std::optional<laboratory::ErrorByDirection>>> errors(specimens);
   std::vector<std::vector<std::optional<double>>> means(specimens);

@@ -5,7 +5,6 @@
 #include <incise/core/verdict.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
-#include <incise/io/json_file.hpp>
 #include <incise/io/transform_json.hpp>
 #include <incise/planning/robust_compensation.hpp>
 #include <incise/steps/camera_steps.hpp>

@@ -8,7 +8,6 @@
 #include <incise/planning/converging_compensation.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include <incise/planning/eligibility.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

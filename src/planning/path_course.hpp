@@ -11,7 +11,6 @@ class PathCourse {
  public:
   explicit PathCourse(const ToolPath& path);
 
-  [[nodiscard]] double length_mm() const { return length_; }
   [[nodiscard]] std::size_t waypoints() const { return along_.size(); }
   [[nodiscard]] double at(std::size_t waypoint) const { return along_[waypoint]; }  ///< arc length of a waypoint
   /// Length of the path that is nearer to this waypoint than to its neighbours, along the path.

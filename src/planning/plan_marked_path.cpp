@@ -5,7 +5,6 @@
 #include <incise/planning/plan_marked_path.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

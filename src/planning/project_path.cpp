@@ -5,7 +5,6 @@
 #include <incise/planning/project_path.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>

@@ -270,7 +270,7 @@ class Cutting {
     }
     if (gone.empty()) return;
     remove_voxels(tissue, {gone.begin(), gone.end()});
-    result_.loose += remove_loose(tissue);
+    remove_loose(tissue);
   }
 
   /// Shrinks heated tissue.

@@ -3,7 +3,6 @@
 #include <incise/geometry/raster.hpp>
 #include <incise/second_bench/cut.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace incise::second_bench {

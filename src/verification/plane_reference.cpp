@@ -4,7 +4,6 @@
 #include <incise/geometry/types.hpp>
 
 #include <Eigen/SparseCholesky>
-#include <cmath>
 
 namespace incise {
 namespace {

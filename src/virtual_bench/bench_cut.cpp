@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace incise {
@@ -308,26 +307,13 @@ void Cut::read_edges() {
   surface.vertices = state_.positions;
   surface.approach = body_.approach;
   surface.inside_mm = curve_centroid(result_.tumor_edge);
-  std::vector<std::array<VertexId, 3>> skin;
-  for (const BoundaryFace& face : body_.skin) {
-    Triangle key = face.corners;
-    std::sort(key.begin(), key.end());
-    skin.push_back(key);
-  }
-  std::sort(skin.begin(), skin.end());
-  for (const BoundaryFace& face : boundary_faces(mesh_, state_.is_live)) {
-    Triangle key = face.corners;
-    std::sort(key.begin(), key.end());
-    surface.triangles.push_back(face.corners);
-    surface.is_skin.push_back(std::binary_search(skin.begin(), skin.end(), key) ? 1 : 0);
-  }
+  add_faces(body_, state_.is_live, surface.triangles, surface.is_skin);
   InnerEdgeSettings settings;
   settings.opening_mm = kBridgeMm;
   result_.inner_edge = inner_edge_contour(surface, settings);
 }
 
 BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& workers, Monitor& monitor) {
-  const auto start = std::chrono::steady_clock::now();
   const std::vector<TipPose> course = cutting_part(given);
   const double speed = mean_speed(course);
   const double duration = course.back().time_s;
@@ -353,7 +339,6 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
   const bool is_at_rest = is_finite_ && result_.unrest_mm < kSettleTolerance;
   result_.outcome = !is_at_rest ? Outcome::NotConverged : !result_.inner_edge ? Outcome::OpenLoop : Outcome::Success;
   result_.after = std::move(state_);
-  result_.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return std::move(result_);
 }
 

@@ -8,10 +8,8 @@
 #include <incise/virtual_bench/body.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -176,7 +174,6 @@ PhantomSettings phantom_settings(const Specimen& specimen) {
 }
 
 BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution, Workers& workers, Monitor& monitor) {
-  const auto start = std::chrono::steady_clock::now();
   if (const auto problems = problems_of(specimen); !problems.empty()) throw CaseError("specimen", problems.front());
   PhantomSettings shown = phantom_settings(specimen);
   shown.spacing_mm = Vec3::Constant(3.0);  // the CT is not used, and shape and tumour do not depend on its spacing
@@ -193,7 +190,6 @@ BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution,
       make_tissue_model(std::move(mesh), material_of(specimen), constraints_of(specimen), gravity, fields.tissue));
   body.skin = boundary_faces(body.tissue->mesh);
   body.tumor_edge_rest = counter_clockwise(phantom.tumor_edge, body.approach);
-  body.tumor_rest = phantom.tumor;
   const TetLocator locator(body.tissue->mesh, body.tissue->mesh.vertices);
   for (const Vec3& p : body.tumor_edge_rest.points) {
     const auto point = locator.locate(p, 1.0);
@@ -201,7 +197,6 @@ BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution,
     body.tumor_edge.push_back(*point);
   }
   stretch(body, workers, monitor);
-  body.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return body;
 }
 
@@ -218,6 +213,21 @@ TriMesh skin_at(const BenchBody& body, std::span<const Vec3> positions) {
   skin.vertices.assign(positions.begin(), positions.end());
   for (const BoundaryFace& face : body.skin) skin.triangles.push_back(face.corners);
   return skin;
+}
+
+void add_faces(const BenchBody& body, std::span<const std::uint8_t> is_live, std::vector<Triangle>& triangles,
+               std::vector<std::uint8_t>& is_skin) {
+  const auto sorted = [](Triangle corners) {
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  };
+  std::vector<Triangle> skin;
+  for (const BoundaryFace& face : body.skin) skin.push_back(sorted(face.corners));
+  std::sort(skin.begin(), skin.end());
+  for (const BoundaryFace& face : boundary_faces(body.tissue->mesh, is_live)) {
+    triangles.push_back(face.corners);
+    is_skin.push_back(std::binary_search(skin.begin(), skin.end(), sorted(face.corners)) ? 1 : 0);
+  }
 }
 
 }  // namespace incise

@@ -1,7 +1,6 @@
 #include "virtual_bench/electrode.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace incise {
 

@@ -1,18 +1,7 @@
 #include <incise/core/error.hpp>
 #include <incise/virtual_bench/pictures.hpp>
 
-#include <algorithm>
-
 namespace incise {
-namespace {
-
-Triangle sorted(Triangle corners) {
-  std::sort(corners.begin(), corners.end());
-  return corners;
-}
-
-}  // namespace
-
 FrameShot shoot_frame(const BenchBody& body, const Mat4& T_camera_specimen) {
   const Specimen& specimen = body.specimen;
   SeenTissue seen;
@@ -27,16 +16,10 @@ FrameShot shoot_frame(const BenchBody& body, const Mat4& T_camera_specimen) {
 
 ColorPicture photograph(const BenchBody& body, const BenchCut& cut, const PhotographSettings& settings) {
   INCISE_REQUIRE(cut.after.positions.size() == body.tissue->mesh.vertices.size(), "expected a cut of this body");
-  std::vector<Triangle> skin;
-  for (const BoundaryFace& face : body.skin) skin.push_back(sorted(face.corners));
-  std::sort(skin.begin(), skin.end());
   SeenTissue seen;
   seen.vertices = cut.after.positions;
   seen.rest = body.tissue->mesh.vertices;
-  for (const BoundaryFace& face : boundary_faces(body.tissue->mesh, cut.after.is_live)) {
-    seen.triangles.push_back(face.corners);
-    seen.is_skin.push_back(std::binary_search(skin.begin(), skin.end(), sorted(face.corners)) ? 1 : 0);
-  }
+  add_faces(body, cut.after.is_live, seen.triangles, seen.is_skin);
   seen.tumor_edge = cut.tumor_edge;
   Marked marked;
   marked.seed = body.specimen.seed;

@@ -3,7 +3,6 @@
 #include <incise/virtual_bench/readings.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace incise {
 namespace {

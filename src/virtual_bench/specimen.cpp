@@ -1,5 +1,3 @@
-#include <incise/core/error.hpp>
-#include <incise/core/expect.hpp>
 #include <incise/virtual_bench/specimen.hpp>
 
 #include <array>

@@ -5,7 +5,6 @@
 #include <incise/evaluation/error_profile.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

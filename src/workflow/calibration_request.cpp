@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace incise {
 std::vector<Problem> validate(const CalibrationRequest& r) {

@@ -36,19 +36,26 @@ MaterialField field_from(const TetMesh& mesh) {
   throw CaseError(kWhere, field_name, fmt::format("{} of {}", first.path, first.found), first.expected);
 }
 
-/// @param field  field of the case that uses labels.
+/// Returns a cell array that has one number for each tet.
+/// @param field  field of the case that uses it.
+/// @param hint   why a mesh may lack it.
+const std::vector<double>& numbers_of(const TetMesh& mesh, const char* array, const char* field, const char* hint) {
+  const auto found = mesh.cell_data.find(array);
+  if (found == mesh.cell_data.end())
+    throw CaseError(kWhere, field, cell_arrays(mesh),
+                    fmt::format("the cell array '{}', one number for each tet", array), hint);
+  const auto& [components, values] = found->second;
+  if (components != 1 || values.size() != mesh.tets.size())
+    throw CaseError(
+        kWhere, field,
+        fmt::format("the cell array '{}' with {} components and {} numbers", array, components, values.size()),
+        fmt::format("one number for each of {} tets", mesh.tets.size()));
+  return values;
+}
+
 const std::vector<double>& labels_of(const TetMesh& mesh, const char* field) {
-  const auto found = mesh.cell_data.find(kLabelArray);
-  if (found != mesh.cell_data.end() && found->second.components == 1 && found->second.values.size() == mesh.tets.size()) {
-    return found->second.values;
-  }
-  if (found != mesh.cell_data.end()) {
-    throw CaseError(kWhere, field,
-                    fmt::format("the cell array 'label' with {} components and {} numbers", found->second.components, found->second.values.size()),
-                    fmt::format("one number for each of {} tets", mesh.tets.size()));
-  }
-  throw CaseError(kWhere, field, cell_arrays(mesh), "the cell array 'label', one number for each tet",
-                  "A mesh that is made from a CT has the labels of ct.labels: give ct.labels or specimen.mesh");
+  return numbers_of(mesh, kLabelArray, field,
+                    "A mesh that is made from a CT has the labels of ct.labels: give ct.labels or specimen.mesh");
 }
 
 /// @param field  field of the case that names the label.
@@ -161,17 +168,8 @@ std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& 
   std::vector<double> toughness;
   if (variation.from_mesh) {
     const char* field = "cut.toughness_from_mesh";
-    const auto found = mesh.cell_data.find(kToughnessArray);
-    if (found == mesh.cell_data.end()) {
-      throw CaseError(kWhere, field, cell_arrays(mesh), "the cell array 'toughness', one number for each tet",
-                      "A mesh that is made from a CT has none: give specimen.mesh");
-    }
-    toughness = found->second.values;
-    if (found->second.components != 1 || toughness.size() != mesh.tets.size()) {
-      throw CaseError(kWhere, field, fmt::format("the cell array 'toughness' with {} components and {} numbers", found->second.components,
-                                                 toughness.size()),
-                      fmt::format("one number for each of {} tets", mesh.tets.size()));
-    }
+    toughness =
+        numbers_of(mesh, kToughnessArray, field, "A mesh that is made from a CT has none: give specimen.mesh");
     const auto bad = std::find_if_not(toughness.begin(), toughness.end(), [](double t) { return std::isfinite(t) && t > 0.0; });
     if (bad != toughness.end()) {
       throw CaseError(kWhere, field, fmt::format("toughness of {} at tet {}", *bad, bad - toughness.begin()), "a finite number above 0");

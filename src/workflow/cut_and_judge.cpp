@@ -82,20 +82,12 @@ std::optional<double> line_to_edge_mm(const IncisionResult& incision, const Cont
     if (layer.centerline) lines.push_back(&*layer.centerline);
   }
   const ViewFrame view = view_along(approach);
-  const auto flat = [&view](const Contour& contour) {
-    Contour seen = contour;
-    for (Vec3& p : seen.points) {
-      const Vec3 place = view.to_view(p);
-      p = Vec3(place.x(), place.y(), 0.0);
-    }
-    return seen;
-  };
-  const Contour polygon = flat(edge);
+  const Contour polygon = flat_in_view(edge, view);
   constexpr double kStepMm = 0.1;
   std::optional<double> least;
   for (const Contour* line : lines) {
     if (line->points.size() < 2) continue;
-    for (const Vec3& p : resample_by_step(flat(*line), kStepMm).points) {
+    for (const Vec3& p : resample_by_step(flat_in_view(*line, view), kStepMm).points) {
       const double distance =
           nearest_on(polygon, p).distance_mm * (contains_in_view(polygon, p, -Vec3::UnitZ()) ? -1.0 : 1.0);
       if (!least || distance < *least) least = distance;

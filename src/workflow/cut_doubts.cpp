@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace incise {
 namespace {
@@ -50,14 +49,12 @@ double mean_edge_mm(const Tet& tet, std::span<const Vec3> positions) {
 /// Finds places near the tool's way, seen along the approach and no deeper than the tool.
 class WayOfTool {
  public:
-  WayOfTool(const ToolPath& path, const Vec3& approach) : view_(view_along(approach)), entries_(entry_contour(path)) {
+  WayOfTool(const ToolPath& path, const Vec3& approach)
+      : view_(view_along(approach)),
+        entries_(entry_contour(path)),
+        flat_(flat_in_view(entries_, view_)),
+        box_(bounding_box(flat_.points)) {
     for (const Waypoint& waypoint : path.waypoints) deepest_mm_ = std::max(deepest_mm_, waypoint.depth_mm);
-    flat_.is_closed = entries_.is_closed;
-    for (const Vec3& entry : entries_.points) {
-      const Vec3 seen = view_.to_view(entry);
-      flat_.points.emplace_back(seen.x(), seen.y(), 0.0);
-      box_.extend(flat_.points.back());
-    }
   }
 
   [[nodiscard]] bool comes_near(const Vec3& place) const {

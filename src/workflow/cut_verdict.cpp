@@ -1,11 +1,9 @@
 #include "workflow/layer_line.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/geometry/contour_checks.hpp>
 #include <incise/workflow/cut_verdict.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

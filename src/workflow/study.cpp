@@ -414,10 +414,7 @@ class Runner {
     return cut;
   }
 
-  struct KeptCut {
-    SimulatedCut cut;
-    double wall_s = 0.0;
-  };
+  using KeptCut = Timed<SimulatedCut>;
 
   std::optional<KeptCut> find_cut(const std::string& name, const CacheKey& key, const ToolPath& path) {
     auto kept = cache_.find<Timed<IncisionResult>>(
@@ -428,9 +425,9 @@ class Runner {
   }
 
   void keep_cut(const std::string& name, const CacheKey& key, KeptCut& made) {
-    Timed<IncisionResult> timed{std::move(made.cut.incision), made.wall_s};  // large: moved here and back, not copied
+    Timed<IncisionResult> timed{std::move(made.value.incision), made.wall_s};  // large: moved here and back, not copied
     cache_.keep(name, key, timed);
-    made.cut.incision = std::move(timed.value);
+    made.value.incision = std::move(timed.value);
     cache_.remove(checkpoint_slot(name));
   }
 
@@ -501,12 +498,8 @@ class Runner {
       there = make_cut(to_string(stage), name, key, path);
       report_done(stage, there->wall_s);
     }
-    hand_over_cut(name, key, *there);
-    return std::move(there->cut);
-  }
-
-  void hand_over_cut(const std::string& name, const CacheKey& key, const KeptCut& made) {
-    sink_.cut({name, key.digest(), made.wall_s}, *study_.model, *study_.stretched, made.cut);
+    sink_.cut({name, key.digest(), there->wall_s}, *study_.model, *study_.stretched, there->value);
+    return std::move(there->value);
   }
 
   /// The tumour's surface in the stretched tissue; without triangles: not known.
@@ -605,7 +598,7 @@ class Runner {
     const CacheKey key = key_of_cut(path);
     std::optional<KeptCut> there = find_cut(name, key, path);
     if (!there) there = make_cut(fmt::format("pass {}", pass), name, key, path);
-    return std::move(there->cut);
+    return std::move(there->value);
   }
 
   /// Verifies the correction. With the default method, its cut was made during the iteration and is not repeated. The

@@ -31,8 +31,6 @@ class DragResponse {
   /// Least and greatest drag length, mm, between which all cuts at the reference stiffness closed.
   [[nodiscard]] double least_mm() const { return knots_.front().drag_length_mm; }
   [[nodiscard]] double most_mm() const { return knots_.back().drag_length_mm; }
-  /// Whether a drag length above most_mm() was simulated and left no closed ring.
-  [[nodiscard]] bool is_ended_by_failure() const { return is_ended_by_failure_; }
   /// Whether cuts with a second stiffness give a slope.
   [[nodiscard]] bool knows_stiffness() const { return !slopes_.empty(); }
 
@@ -53,7 +51,6 @@ class DragResponse {
   std::vector<SimulatedProfile> knots_;   ///< at the reference stiffness, by drag length
   std::vector<SimulatedProfile> slopes_;  ///< per ln(stiffness factor), by drag length
   double grain_mm_ = 0.0;
-  bool is_ended_by_failure_ = false;
 };
 
 }  // namespace incise

@@ -49,6 +49,9 @@ struct ViewFrame {
 /// @pre approach finite and not zero.
 [[nodiscard]] ViewFrame view_along(const Vec3& approach);
 
+/// Returns the contour as seen in the picture: view coordinates, mm, at height 0.
+[[nodiscard]] Contour flat_in_view(Contour contour, const ViewFrame& view);
+
 /// Signed area, mm², of a closed contour seen along `approach`: positive = counter-clockwise.
 [[nodiscard]] double signed_area_mm2(const Contour& contour, const Vec3& approach);
 

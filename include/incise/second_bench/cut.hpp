@@ -14,7 +14,6 @@ struct Cut {
   double max_force_mn = 0.0;               ///< the greatest over the steps
   std::size_t parted_by_heat = 0;   ///< voxels that parted in a step in which heat contributed more than work
   std::size_t parted_by_force = 0;  ///< other voxels that parted
-  std::size_t loose = 0;            ///< voxels removed because they had come loose from the body
   double residual = 0.0;            ///< norm of the free forces divided by that of the reactions, at the end
   int steps = 0;
   int iterations = 0;  ///< of relaxation, settling included

@@ -29,7 +29,6 @@ struct BenchCut {
   double unrest_mm = 0.0;  ///< greatest motion of a vertex in the last solution before the photograph
   int solutions = 0;       ///< of linear systems
   int linear_iterations = 0;
-  double wall_s = 0.0;
 };
 
 /// Cuts a specimen along a course by the bench's own law (docs/models/virtual_bench.md): adhesive drag that grows with

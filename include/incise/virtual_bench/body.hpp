@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace incise {
@@ -37,15 +38,18 @@ struct BenchBody {
   std::vector<BoundaryFace> skin;             ///< of the uncut body
   std::vector<EmbeddedPoint> tumor_edge;      ///< material points, counter-clockwise seen from above
   Contour tumor_edge_rest;                    ///< positions of these points at rest
-  TriMesh tumor_rest;                         ///< closed surface of the inclusion at rest
   Vec3 approach = -Vec3::UnitZ();             ///< unit; the direction in which camera and surgeon look
   double stretch_force_n = 0.0;               ///< the suture's pull, without the load cell's error
   Outcome outcome =
       Outcome::NotConverged;  ///< Success, ElementInverted (in equilibrium, but tets turned inside out) or NotConverged
   double equilibrium_residual = 0.0;  ///< norm of the free residual divided by the norm of the reactions
   std::size_t inverted_tets = 0;
-  double wall_s = 0.0;
 };
+
+/// Appends the boundary of the tissue that is left and, for each of its triangles, 1 if it is part of the uncut skin.
+/// @param is_live  per tet: 0 where it was removed.
+void add_faces(const BenchBody& body, std::span<const std::uint8_t> is_live, std::vector<Triangle>& triangles,
+               std::vector<std::uint8_t>& is_skin);
 
 /// Returns the settings of the phantom with the specimen's shape, tumour and scanner noise.
 [[nodiscard]] PhantomSettings phantom_settings(const Specimen& specimen);
