@@ -20,6 +20,7 @@ py::dict settings_dict(const CaseFile& file) {
 }  // namespace
 
 PYBIND11_MODULE(incise, m) {
+  py::module_::import("numpy");  // results need it: a missing one is found here, not after minutes of cutting
   m.doc() = "Plans robotic soft-tissue incisions by simulating them first. Lengths in mm, coordinates in LPS.";
   m.attr("__version__") = std::string(version());
 

@@ -64,6 +64,20 @@ std::string shown_at(const nlohmann::ordered_json& result, const char* part, con
   return cut != result.end() && cut->is_object() && cut->contains(place) ? shown(cut->at(place)) : "-";
 }
 
+/// Says where a ring closed but strips of skin above it hide its inner edge.
+void print_hidden_edges(const nlohmann::ordered_json& result) {
+  std::string cuts;
+  for (const auto& [part, name] : {std::pair{"before", "as planned"}, std::pair{"after", "corrected"}}) {
+    if (shown_at(result, part, "/closed_loop") != "yes") continue;
+    const std::string seen = shown_at(result, part, "/inner_edge/outcome");
+    if (seen != "-" && seen != "success") cuts += (cuts.empty() ? "" : " and ") + std::string(name);
+  }
+  if (cuts.empty()) return;
+  fmt::print("No inner edge is seen from above {}: strips of skin still bridge the kerf. Look at the report, and try a "
+             "finer mesh. Margins are those of the mid-line and of the kerf below.\n",
+             cuts);
+}
+
 /// Prints how the error fell from pass to pass, against the mesh-resolution limit.
 void print_passes(const nlohmann::ordered_json& result) {
   const nlohmann::ordered_json::json_pointer history("/correction/history");
@@ -98,6 +112,7 @@ void print_study(const CommonOptions& options, const nlohmann::ordered_json& res
   for (const StudyLine& line : kStudyLines) {
     fmt::print("{:<36} {:>16} {:>16}\n", line.text, shown_at(result, "before", line.pointer), shown_at(result, "after", line.pointer));
   }
+  print_hidden_edges(result);
   print_passes(result);
   print_risks(result);
   fmt::print("\n");

@@ -12,9 +12,12 @@ constexpr double kSmoothingShare = 0.1;    // of the whole time
 }  // namespace
 
 void TimeLeft::note(double elapsed_s, double fraction) {
-  if (!first_) first_ = Moment{elapsed_s, fraction};
-  const double since_last_s = elapsed_s - last_s_;
-  last_s_ = elapsed_s;
+  if (!first_ || fraction < last_.fraction) {
+    first_ = Moment{elapsed_s, fraction};
+    left_s_.reset();
+  }
+  const double since_last_s = elapsed_s - last_.elapsed_s;
+  last_ = Moment{elapsed_s, fraction};
   const double done = fraction - first_->fraction;
   if (done < kLeastFraction) return;
   const double spent_s = elapsed_s - first_->elapsed_s;

@@ -5,6 +5,7 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
+#include <incise/io/manifest.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -107,6 +108,8 @@ fs::path replaced_by(const fs::path& name) {
 
 constexpr const char* kManifest = "manifest.json";
 constexpr const char* kFiles = "files";
+constexpr const char* kCase = "case.yaml";  // the one file of a result that people edit
+constexpr const char* kCaseDigest = "case_sha256";
 
 /// Returns the relative paths of everything below a folder but folders; includes links and hidden files.
 std::set<std::string> files_below(const fs::path& folder) {
@@ -123,6 +126,7 @@ void list_files_in_manifest(const fs::path& folder) {
   nlohmann::ordered_json manifest = read_json(file);
   if (!manifest.is_object()) return;
   manifest[kFiles] = files_below(folder);
+  if (fs::is_regular_file(folder / kCase)) manifest[kCaseDigest] = sha256_of_file(folder / kCase);
   write_json(file, manifest);
 }
 
@@ -259,6 +263,11 @@ void require_replaceable(const fs::path& name) {
   for (const std::string& file : files_below(folder)) {
     if (std::find(own.begin(), own.end(), nlohmann::ordered_json(file)) != own.end()) continue;
     throw DataError(folder, "", fmt::format("'{}' of another origin", file), kExpected, "Move that file, or choose another place for the output");
+  }
+  const auto digest = manifest.find(kCaseDigest);
+  if (digest != manifest.end() && fs::exists(folder / kCase, error) && *digest != sha256_of_file(folder / kCase)) {
+    throw DataError(folder, "", fmt::format("'{}', changed since it was written", kCase), kExpected,
+                    "Move that file, or choose another place for the output");
   }
 }
 

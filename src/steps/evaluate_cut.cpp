@@ -22,6 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr double kDoubtfulHeightMm = 2.0;  // more than curved skin makes of 5 mm; a pulled tongue's edge moves by more
+
 Json shape_json(const RulerShape& shape) {
   const auto figure = [](const RulerFigure& f) { return Json{{"value", f.value}, {"standard_error", f.error}}; };
   return {{"spacing_change", figure(shape.spacing_change)},
@@ -226,6 +228,22 @@ Measured from_line(const EvaluateRequest& request) {
   return measured(request.line, [&] { return evaluate_line(incision, line, settings); });
 }
 
+/// Returns how far the incision lies above the tumour's edge, mm, on average over its points: each against the point of
+/// the edge that is nearest to it seen along the approach.
+double mean_height_mm(const Contour& incision, const Contour& edge, const Vec3& approach) {
+  const ViewFrame view = view_along(approach);
+  const Contour flat = flat_in_view(edge, view);
+  double sum = 0.0;
+  for (const Vec3& p : incision.points) {
+    const Vec3 seen = view.to_view(p);
+    const ContourPoint nearest = nearest_on(flat, Vec3(seen.x(), seen.y(), 0.0));
+    const Vec3& from = edge.points[nearest.segment];
+    const Vec3& to = edge.points[(nearest.segment + 1) % edge.points.size()];
+    sum += seen.z() - view.to_view(from + nearest.fraction * (to - from)).z();
+  }
+  return sum / static_cast<double>(incision.points.size());
+}
+
 Measured from_files(const EvaluateRequest& request) {
   const EvaluationSettings& settings = request.settings;
   if (!request.line.empty()) return from_line(request);
@@ -235,6 +253,16 @@ Measured from_files(const EvaluateRequest& request) {
   require_usable(tumor_edge, "a tumour", kLargestTumorMm, settings.approach, request.tumor);
   Measured result = measured(request.tumor, [&] { return evaluate(incision, tumor_edge, settings); });
   add_contours(result.json, result.evaluation, tumor_edge, settings.approach);
+  const double height_mm = mean_height_mm(incision, tumor_edge, settings.approach);
+  if (std::abs(height_mm) > kDoubtfulHeightMm) {
+    result.warnings.push_back(
+        fmt::format("the incision lies {:.1f} mm {} the tumour's edge on average, seen along {} {} {}, and distances are "
+                    "measured in space. Are both of the same tissue: at rest, stretched, or after the cut? The edge of "
+                    "a run's mid-line is plan/tumor_edge.csv, that of its inner edge tumor_edge_final.csv",
+                    std::abs(height_mm), height_mm < 0.0 ? "below" : "above", settings.approach.x() + 0.0,
+                    settings.approach.y() + 0.0, settings.approach.z() + 0.0));
+  }
+  result.json["warnings"] = result.warnings;
   if (!request.figure.empty()) {
     const std::string name = request.incision.stem().string();
     write_figure(request.figure, evaluation_figure_svg(result.evaluation, tumor_edge, settings, name, request.colors));

@@ -258,7 +258,7 @@ void RunFolder::remove_what_is_out_of_date(Stage until, Monitor& monitor) {
   if (!is_own_manifest(program / "manifest.json") || is_made_as_now(program)) return;
   remove_replaceable(program);
   monitor.message(Severity::Warning,
-                  fmt::format("{}: removed, because the settings, inputs or version have changed since it was made",
+                  fmt::format("{}: removed, because the settings, the inputs or their places, or the version have changed since it was made",
                               program.string()));
 }
 
@@ -386,6 +386,7 @@ void RunFolder::plan(const ProductNote& note, const ToolPath& path) {
   write(note, [&](const std::filesystem::path& to) {
     write_tool_path(to / "path.json", with_specimen(path));
     write_contour_vtp(to / "path.vtp", entry_contour(path));
+    if (!path.tumor_edge.points.empty()) write_contour_csv(to / "tumor_edge.csv", path.tumor_edge);
     write_json(to / "plan.json", plan_summary_json(path));
   });
 }

@@ -586,6 +586,19 @@ class EvaluateTest(CommandTest):
         self.assert_refused(done, BAD_DATA, "flat.csv", "no area")
         self.assert_nothing_written(self.folder / "out.json")
 
+    def test_an_edge_of_another_state_of_the_tissue_is_doubted(self):
+        cut = small_case.ring(radius=small_case.TUMOR_RADIUS_MM + 5.0, z=10.0)
+        small_case.write_contour(self.folder / "cut.csv", cut)
+        for height, doubts in ((11.0, []), (13.0, ["3.0 mm below", "plan/tumor_edge.csv"])):
+            with self.subTest(height=height):
+                small_case.write_contour(self.folder / "edge.csv", small_case.ring(z=height))
+                done = self.incise("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "-o", "out.json")
+                warnings = json.loads((self.folder / "out.json").read_text())["warnings"]
+                self.assertEqual(len(warnings), 1 if doubts else 0)
+                for doubt in doubts:
+                    self.assertIn(doubt, warnings[0])
+                    self.assertIn(doubt, done.stderr)
+
     def test_settings_out_of_range_are_the_command_lines_fault(self):
         small_case.write_contour(self.folder / "good.csv", small_case.ring())
         done = self.incise("evaluate", "--incision", "good.csv", "--tumor", "good.csv", "--approach", "0", "0", "0")

@@ -32,6 +32,16 @@ TEST(TimeLeft, OfAResumedComputationIsThatOfItsOwnPace) {
   EXPECT_NEAR(left.seconds().value(), 3.0, 1e-9);
 }
 
+TEST(TimeLeft, OfTheNextComputationBeginsAnew) {
+  TimeLeft left;
+  left.note(0.0, 0.0);
+  left.note(100.0, 1.0);
+  left.note(100.0, 0.0);
+  EXPECT_FALSE(left.seconds().has_value());
+  left.note(101.0, 0.5);
+  EXPECT_NEAR(left.seconds().value(), 1.0, 1e-9);
+}
+
 TEST(TimeLeft, FollowsAChangedPaceWithoutJumping) {
   TimeLeft left;
   std::optional<double> last;

@@ -176,6 +176,22 @@ TEST(AtomicFolder, LooksAgainForForeignFilesBeforeItReplaces) {
   EXPECT_EQ(state_of(folder / "out"), "old");
 }
 
+TEST(AtomicFolder, DoesNotReplaceACaseThatWasEdited) {
+  const incise::testing::TemporaryFolder folder;
+  const auto make = [&folder](const char* text) {
+    AtomicFolder output(folder / "specimen");
+    std::ofstream(output.path() / "case.yaml") << text;
+    std::ofstream(output.path() / "manifest.json") << kManifest;
+    output.commit();
+  };
+  make("seed 1");
+  make("seed 2");
+  EXPECT_EQ(read_text(folder / "specimen" / "case.yaml"), "seed 2");
+  std::ofstream(folder / "specimen" / "case.yaml") << "mine";
+  EXPECT_THAT([&] { make("seed 3"); }, ThrowsMessage<DataError>(HasSubstr("'case.yaml', changed since it was written")));
+  EXPECT_EQ(read_text(folder / "specimen" / "case.yaml"), "mine");
+}
+
 TEST(RemoveAbandonedTemporaries, LeavesWhatAnotherProcessWritesWhateverItsNumber) {
   const incise::testing::TemporaryFolder folder;
   int ready[2], go[2];
@@ -205,7 +221,7 @@ TEST(RemoveAbandonedTemporaries, LeavesWhatAnotherProcessWritesWhateverItsNumber
 }
 
 TEST(FolderLock, IsGivenBackThoughAChildThatWasForkedMeanwhileLives) {
-  const TemporaryFolder folder;
+  const incise::testing::TemporaryFolder folder;
   std::optional<FolderLock> lock(folder / "out");
   const pid_t child = ::fork();
   if (child == 0) {
