@@ -504,7 +504,8 @@ export async function refuseRegistration() {
   });
 }
 
-const kLaid = {
+/** What can be laid: the state's names for it and for what is accepted of it, and whose program it is. */
+export const kLaid = {
   incise: {as: "lay", accepted: "acceptLaid", of: "tissue"},
   mark: {as: "mark", accepted: "acceptMark", of: "mark"},
 };

@@ -28,8 +28,7 @@ async function ask(address, options = {}) {
   const headers = {"X-Incise-Token": token, ...options.headers};
   try {
     return await fetch(address, {...options, headers, cache: "no-store"});
-  } catch (error) {
-    if (error.name === "AbortError") throw error;
+  } catch {
     throw new CallError("lost", "The studio's server does not answer.");
   }
 }
@@ -64,14 +63,10 @@ async function fetchArray(reference) {
   throw new CallError("crashed", `The server sent ${array.length} numbers in place of ${reference.count}.`);
 }
 
-function isReference(value) {
-  return typeof value.blob === "string" || typeof value.blob === "number";
-}
-
 /** A copy of a result with every reference to an array replaced by the array. @throws CallError */
 export async function load(value) {
   if (value === null || typeof value !== "object") return value;
-  if (isReference(value)) return fetchArray(value);
+  if (typeof value.blob === "string") return fetchArray(value);
   if (Array.isArray(value)) return isPlain(value) ? value : Promise.all(value.map(load));
   const pairs = await Promise.all(Object.entries(value).map(async ([key, part]) => [key, await load(part)]));
   return Object.fromEntries(pairs);

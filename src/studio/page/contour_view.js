@@ -3,6 +3,7 @@
 import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
 import {dot, letterOf, plus, pointsOf, roundedDown, viewAlong} from "./geometry.js";
+import {barPath} from "./canvas_view.js";
 import {isDark} from "./colours.js";
 
 /** {low, high}: the rectangle about curves in the picture's right and up, mm. */
@@ -73,19 +74,13 @@ export function ContourView({title, curves, direction, bounds, mark, id}) {
   );
 }
 
-function Swatch({curve}) {
+/** A piece of a curve's line. */
+export function Swatch({curve: {colour, width = 2, dash = []}}) {
+  const look = {stroke: colour, "stroke-width": width, "stroke-dasharray": dash.join(" ")};
   return h(
     "svg",
     {class: "swatch-line", viewBox: "0 0 22 6", "aria-hidden": "true"},
-    h("line", {
-      x1: 0,
-      y1: 3,
-      x2: 22,
-      y2: 3,
-      stroke: curve.colour,
-      "stroke-width": curve.width || 2,
-      "stroke-dasharray": (curve.dash || []).join(" "),
-    }),
+    h("line", {x1: 0, y1: 3, x2: 22, y2: 3, ...look}),
   );
 }
 
@@ -173,15 +168,7 @@ function drawFrame(pen, width, height, scale, right, up) {
     left = 14,
     bottom = height - 12;
   pen.lineWidth = 2;
-  pen.beginPath();
-  for (const [x, y] of [
-    [left, bottom - 5],
-    [left, bottom],
-    [left + bar * scale, bottom],
-    [left + bar * scale, bottom - 5],
-  ]) {
-    pen.lineTo(x, y);
-  }
+  barPath(pen, left, left + bar * scale, bottom);
   pen.stroke();
   word(`${Number(bar.toPrecision(2))} mm`, left + 0.5 * bar * scale, bottom - 11, "center");
 }

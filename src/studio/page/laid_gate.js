@@ -2,17 +2,14 @@
 
 import {h} from "preact";
 import {state, update} from "./store.js";
-import {layAccepting} from "./actions.js";
+import {kLaid, layAccepting} from "./actions.js";
 import {Gate} from "./gate.js";
 
-const kKinds = {
-  incise: {of: "lay", accepted: "acceptLaid", fileName: "incise_on_tissue.script"},
-  mark: {of: "mark", accepted: "acceptMark", fileName: "program_mark.script"},
-};
+const kFileNames = {incise: "incise_on_tissue.script", mark: "program_mark.script"};
 
 /** {of, result, accepted}: the state's name for what was laid, what it is or null, and what was accepted of it. */
 export function laidOf(kind) {
-  const {of, accepted} = kKinds[kind];
+  const {as: of, accepted} = kLaid[kind];
   return {of, result: state[of], accepted: state[accepted]};
 }
 
@@ -22,10 +19,10 @@ export function LaidGate({kind, title}) {
   return h(Gate, {
     result,
     accepted,
-    onAccept: (ids) => update({[kKinds[kind].accepted]: ids}),
+    onAccept: (ids) => update({[kLaid[kind].accepted]: ids}),
     onAgain: () => layAccepting(kind),
     title,
-    fileName: kKinds[kind].fileName,
+    fileName: kFileNames[kind],
     again: kind === "mark" ? "Lay the mark again" : "Lay it again",
     call: state.layKind === kind ? "lay" : "", // the other one's problem is not this one's
     isBusy: Boolean(state.busy.lay),

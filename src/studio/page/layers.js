@@ -267,18 +267,12 @@ function markerLayer(verdict, part) {
 
 function running(state) {
   const {moment, plan} = state;
-  const skin = moment && moment.skin;
-  if (!skin && !moment) return planned(state);
-  return [
-    ...(skin ? [skinLayer(skin, "cut-skin")] : bodyLayers(state)),
-    moment.tip || moment.path ? toolLayer(moment) : null,
-    curveLayer("line", "mid-line", ink.kerf, pointsOf(moment.line), false, [moment], kWideTube),
-    ...pathLayers(plan),
-  ];
+  if (!moment) return planned(state);
+  return [skinLayer(moment.skin, "cut-skin"), toolLayer(moment), ...pathLayers(plan)];
 }
 
 function toolLayer(moment) {
-  const axis = moment.axis || directionOf(setting("plan.approach"), [0, 0, -1]),
+  const axis = directionOf(setting("plan.approach"), [0, 0, -1]),
     diameter = setting("tool.diameter_mm") || 1;
   return {
     name: "tool",
@@ -286,7 +280,7 @@ function toolLayer(moment) {
     colour: ink.tool,
     isArea: true,
     parts: [moment],
-    build: () => needle(moment.tip || moment.path, axis, diameter, 25),
+    build: () => needle(moment.tip, axis, diameter, 25),
   };
 }
 

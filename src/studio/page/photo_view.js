@@ -1,5 +1,6 @@
 // A photograph with the lines found on it, to be zoomed, moved and drawn on.
 
+import {CanvasView, barPath} from "./canvas_view.js";
 import {clamp, roundedDown} from "./geometry.js";
 import {onPhoto} from "./colours.js";
 import {tenths} from "./photo_settings.js";
@@ -13,16 +14,16 @@ const kSmallMove = 5; // px: less is a click
  *  {picture, lines, handles, selected, marks, clock, mm_per_pixel, isDrawing}: picture {width, height, rgb}; lines
  *  [{points, colour, isClosed, dash}]; marks: points of the scale; handles: points with numbers; clock
  *  [{at, from, text}]. It calls `on.add(point)`, `on.select(k)`, `on.move(k, point)`, `on.remove(k)`, `on.close()`. */
-export class PhotoView {
+export class PhotoView extends CanvasView {
   constructor(host, on) {
-    Object.assign(this, {host, on, model: {}, zoom: 0, middle: [0, 0], fingers: new Map(), held: -1});
-    this.canvas = document.createElement("canvas");
-    this.readout = document.createElement("output");
-    this.readout.className = "readout";
-    host.append(this.canvas, this.readout);
-    this.listen();
-    this.watch = new ResizeObserver(() => this.resize());
-    this.watch.observe(host);
+    super(host, {
+      label:
+        "Photograph. Arrow keys move it, or the chosen point while a line is drawn; Page Up and Page Down choose a " +
+        "point, Delete removes it, Enter closes the line, plus and minus zoom, Home shows all.",
+      zooms: [0.02, 60],
+      ends: ["pointerup", "pointercancel"],
+    });
+    Object.assign(this, {on, model: {}, held: -1});
   }
 
   /** Ends it. */
@@ -52,19 +53,9 @@ export class PhotoView {
   }
 
   resize() {
-    const ratio = Math.min(2, window.devicePixelRatio || 1);
-    this.canvas.width = Math.max(1, Math.round(this.host.clientWidth * ratio));
-    this.canvas.height = Math.max(1, Math.round(this.host.clientHeight * ratio));
-    this.ratio = ratio;
+    this.fill();
     if (this.isFitted || !(this.zoom > 0)) this.fit();
     this.render();
-  }
-
-  /** Draws at the next chance, once however often it is asked. */
-  render() {
-    if (this.isDirty) return;
-    this.isDirty = true;
-    requestAnimationFrame(() => this.draw());
   }
 
   // --- From the photograph's pixels to the screen's and back. ---
@@ -75,10 +66,6 @@ export class PhotoView {
 
   toPixel(x, y) {
     return [(x - this.half(0)) / this.zoom + this.middle[0], (y - this.half(1)) / this.zoom + this.middle[1]];
-  }
-
-  half(k) {
-    return 0.5 * (k ? this.host.clientHeight : this.host.clientWidth);
   }
 
   // --- Drawing. ---
@@ -173,14 +160,7 @@ export class PhotoView {
     const right = this.host.clientWidth - 14,
       left = right - (bar / mm) * this.zoom,
       bottom = this.host.clientHeight - 14;
-    pen.beginPath();
-    for (const [x, y] of [
-      [left, bottom - 5],
-      [left, bottom],
-      [right, bottom],
-      [right, bottom - 5],
-    ])
-      pen.lineTo(x, y);
+    barPath(pen, left, right, bottom);
     this.strokeTwice(pen, onPhoto.words, 2);
     this.word(pen, `${Number(bar.toPrecision(2))} mm`, 0.5 * (left + right), bottom - 13, onPhoto.words);
   }
@@ -198,27 +178,6 @@ export class PhotoView {
   }
 
   // --- Mouse, touch and keyboard. ---
-
-  listen() {
-    const canvas = this.canvas;
-    canvas.tabIndex = 0;
-    canvas.setAttribute("role", "application");
-    canvas.setAttribute(
-      "aria-label",
-      "Photograph. Arrow keys move it, or the chosen point while a line is drawn; Page Up and Page Down choose a " +
-        "point, Delete removes it, Enter closes the line, plus and minus zoom, Home shows all.",
-    );
-    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("pointerdown", (event) => this.press(event));
-    canvas.addEventListener("pointermove", (event) => this.move(event));
-    canvas.addEventListener("pointerup", (event) => this.release(event));
-    canvas.addEventListener("pointercancel", (event) => this.release(event));
-    canvas.addEventListener("pointerleave", () => {
-      this.readout.textContent = "";
-    });
-    canvas.addEventListener("wheel", (event) => this.roll(event), {passive: false});
-    canvas.addEventListener("keydown", (event) => this.key(event));
-  }
 
   handleAt(x, y, reach) {
     const away = (this.model.handles || []).map((point) => {
@@ -275,29 +234,9 @@ export class PhotoView {
     return tenths([clamp(u, 0, width - 1), clamp(v, 0, height - 1)]);
   }
 
-  spread() {
-    const [a, b] = [...this.fingers.values()];
-    return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
-  }
-
   pinch(before, by) {
     this.zoomBy(Math.max(1, this.spread()) / before);
     this.pan([by[0] / 2, by[1] / 2]);
-  }
-
-  pan(by) {
-    this.middle = this.middle.map((value, k) => value - by[k] / this.zoom);
-    this.isFitted = false;
-    this.render();
-  }
-
-  zoomBy(factor, x = this.half(0), y = this.half(1)) {
-    const zoom = clamp(this.zoom * factor, 0.02, 60),
-      from = [x - this.half(0), y - this.half(1)];
-    this.middle = this.middle.map((value, k) => value + from[k] / this.zoom - from[k] / zoom);
-    this.zoom = zoom;
-    this.isFitted = false;
-    this.render();
   }
 
   roll(event) {

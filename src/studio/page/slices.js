@@ -1,5 +1,6 @@
 // One of the three orthogonal slices: the picture, the tissue found, box, seed, tumour's edge and crosshair.
 
+import {CanvasView, barPath} from "./canvas_view.js";
 import {Plane, boxOutline, clamp, filled, letterOf, middleOf, minus, plus, roundedDown, voxelAt} from "./geometry.js";
 import {SliceImage, outlineOf, paintGrey, paintLabels} from "./slice_image.js";
 import {onBlack, rgbOf} from "./colours.js";
@@ -16,20 +17,18 @@ const kCut = 0.98; // of its radius: a ball of a stroke that a slice cuts farthe
  *  `strokes`: those that the tissue does not show yet; `stroke`: the path that is being painted.
  *  It calls `on.cross(point)`, `on.window(width, level)`, `on.face(box)` while a face of the box is dragged (null: it
  *  goes back), `on.box(box)` when it is let go, `on.seed(point)`, `on.painting()`, `on.stroke(path)`, `on.putAway()`. */
-export class SliceView {
+export class SliceView extends CanvasView {
   constructor(host, name, model, on) {
-    Object.assign(this, {host, name, model, on, zoom: 0, middle: [0, 0], drag: null, fingers: new Map()});
-    this.canvas = document.createElement("canvas");
-    this.readout = document.createElement("output");
-    this.readout.className = "readout";
-    host.append(this.canvas, this.readout);
+    super(host, {
+      label:
+        `${name} slice. Arrow keys move the crosshair, Page Up and Page Down the slice, ` +
+        "plus and minus zoom, Home shows all. With a brush, Enter paints a ball at the crosshair.",
+      zooms: [0.05, 200],
+      ends: ["pointerup", "pointercancel", "lostpointercapture"],
+    });
+    Object.assign(this, {name, model, on, drag: null, drawnCount: 0, outline: {key: "", path: null}});
     this.image = new SliceImage();
     this.labelImage = new SliceImage();
-    this.outline = {key: "", path: null};
-    this.isDirty = false;
-    this.drawnCount = 0;
-    this.listen();
-    new ResizeObserver(() => this.resize()).observe(host);
   }
 
   /** The grid of the picture: the scan's, else that of the tissue. */
@@ -93,20 +92,10 @@ export class SliceView {
   }
 
   resize() {
-    const ratio = Math.min(2, window.devicePixelRatio || 1);
-    this.canvas.width = Math.max(1, Math.round(this.host.clientWidth * ratio));
-    this.canvas.height = Math.max(1, Math.round(this.host.clientHeight * ratio));
-    this.ratio = ratio;
+    this.fill();
     if (!this.host.clientWidth) this.breakOff();
     if (this.ownPlane && (this.isFitted || !(this.zoom > 0))) this.fit();
     this.render();
-  }
-
-  /** Draws at the next chance, once however often it is asked. */
-  render() {
-    if (this.isDirty) return;
-    this.isDirty = true;
-    requestAnimationFrame(() => this.draw());
   }
 
   // --- From pixels of the screen to places and back. ---
@@ -121,10 +110,6 @@ export class SliceView {
     const plane = this.plane();
     const at = [x, y].map((value, k) => ((value - this.half(k)) / this.zoom + this.middle[k]) / plane.step[k]);
     return plane.toPoint([at[0], at[1], plane.toPixel(this.cross())[2]]);
-  }
-
-  half(k) {
-    return 0.5 * (k ? this.host.clientHeight : this.host.clientWidth);
   }
 
   // --- Drawing. ---
@@ -367,14 +352,7 @@ export class SliceView {
     const left = right - bar * this.zoom;
     pen.strokeStyle = onBlack.words;
     pen.lineWidth = 2;
-    pen.beginPath();
-    for (const [x, y] of [
-      [left, bottom - 5],
-      [left, bottom],
-      [right, bottom],
-      [right, bottom - 5],
-    ])
-      pen.lineTo(x, y);
+    barPath(pen, left, right, bottom);
     pen.stroke();
     this.word(pen, `${Number(bar.toPrecision(2))} mm`, 0.5 * (left + right), bottom - 12, "center");
   }
@@ -392,27 +370,10 @@ export class SliceView {
 
   // --- Mouse, touch and keyboard. ---
 
-  listen() {
-    const canvas = this.canvas;
-    canvas.tabIndex = 0;
-    canvas.setAttribute("role", "application");
-    canvas.setAttribute(
-      "aria-label",
-      `${this.name} slice. Arrow keys move the crosshair, Page Up and Page Down the slice, ` +
-        "plus and minus zoom, Home shows all. With a brush, Enter paints a ball at the crosshair.",
-    );
-    canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-    canvas.addEventListener("pointerdown", (event) => this.press(event));
-    canvas.addEventListener("pointermove", (event) => this.move(event));
-    for (const name of ["pointerup", "pointercancel", "lostpointercapture"])
-      canvas.addEventListener(name, (event) => this.release(event));
-    canvas.addEventListener("pointerleave", () => {
-      this.readout.textContent = "";
-      this.pointer = null;
-      if (this.model.brush) this.render();
-    });
-    canvas.addEventListener("wheel", (event) => this.roll(event), {passive: false});
-    canvas.addEventListener("keydown", (event) => this.key(event));
+  leave() {
+    super.leave();
+    this.pointer = null;
+    if (this.model.brush) this.render();
   }
 
   handleAt(x, y, reach) {
@@ -500,21 +461,10 @@ export class SliceView {
     this.render();
   }
 
-  spread() {
-    const [a, b] = [...this.fingers.values()];
-    return b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
-  }
-
   pinch(before, by) {
     const now = this.spread();
     if (before > 0 && now > 0) this.zoomBy(now / before);
     this.pan([by[0] / 2, by[1] / 2]);
-  }
-
-  pan(by) {
-    this.middle = this.middle.map((value, k) => value - by[k] / this.zoom);
-    this.isFitted = false;
-    this.render();
   }
 
   /** Right drag: across changes the window's width, up and down its level. */
@@ -532,15 +482,6 @@ export class SliceView {
     box[side][axis] = side ? Math.max(value, box[0][axis] + 1) : Math.min(value, box[1][axis] - 1);
     this.drag.box = box;
     this.on.face(box);
-  }
-
-  zoomBy(factor, x = this.half(0), y = this.half(1)) {
-    const zoom = clamp(this.zoom * factor, 0.05, 200);
-    const from = [x, y].map((value, k) => value - this.half(k));
-    this.middle = this.middle.map((value, k) => value + from[k] / this.zoom - from[k] / zoom);
-    this.zoom = zoom;
-    this.isFitted = false;
-    this.render();
   }
 
   roll(event) {

@@ -8,7 +8,7 @@ import {isRunning} from "./step_run.js";
 import {Withdrawn, isCurrent} from "./programs.js";
 import {contourOf, correctedOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {KeptTable, WhatIf} from "./what_if.js";
-import {AsOf, Button, Problems, Reasons, Section, Status} from "./widgets.js";
+import {AsOf, Button, DataTable, Problems, Reasons, Section, Status} from "./widgets.js";
 import {ContourView, boundsOf} from "./contour_view.js";
 import {Plot} from "./plots.js";
 import {lookOfPlan} from "./planned_path.js";
@@ -99,34 +99,11 @@ function correctionText(result) {
 function Table({result}) {
   const of = (cut, key) => mm(cut && cut.numbers ? cut.numbers[key] : null),
     hasOther = Boolean(correctedOf(result)) || !result.corrected;
-  return h(
-    "table",
-    {class: "numbers-table"},
-    h(
-      "thead",
-      null,
-      h(
-        "tr",
-        null,
-        h("th", {scope: "col"}, "Simulated"),
-        h("th", {scope: "col", class: "number"}, "As planned"),
-        hasOther ? h("th", {scope: "col", class: "number"}, "Corrected") : null,
-      ),
-    ),
-    h(
-      "tbody",
-      null,
-      kNumbers.map(([key, name]) =>
-        h(
-          "tr",
-          {key, "data-number": key},
-          h("th", {scope: "row"}, name),
-          h("td", {class: "number"}, of(result.as_planned, key)),
-          hasOther ? h("td", {class: "number"}, of(result.corrected, key)) : null,
-        ),
-      ),
-    ),
-  );
+  return h(DataTable, {
+    head: ["Simulated", "As planned", ...(hasOther ? ["Corrected"] : [])],
+    rows: kNumbers.map(([key, name]) => [key, name, of(result.as_planned, key), of(result.corrected, key)]),
+    keyName: "data-number",
+  });
 }
 
 // --- The pictures. ---

@@ -4,7 +4,7 @@ import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
 import {state} from "./store.js";
 import {measure, openPicture} from "./actions.js";
-import {AsOf, Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status} from "./widgets.js";
+import {AsOf, Button, Choice, DataTable, NumberInput, Numbers, Problems, Reasons, Section, Status} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {Commands} from "./commands.js";
 import {
@@ -19,6 +19,7 @@ import {
 } from "./photo_lines.js";
 import {PhotoView} from "./photo_view.js";
 import {Plot} from "./plots.js";
+import {Swatch} from "./contour_view.js";
 import {afterColour} from "./step_compare.js";
 import {
   argumentsOf,
@@ -279,34 +280,12 @@ function Measures({evaluation}) {
   const cut = state.run && (state.run.corrected || state.run.as_planned);
   const which = state.run && !state.run.corrected ? "Simulated as planned" : "Simulated, corrected";
   return [
-    h(
-      "table",
-      {class: "numbers-table", key: "table"},
-      h(
-        "thead",
-        null,
-        h(
-          "tr",
-          null,
-          h("th", {scope: "col"}, "Measured"),
-          h("th", {scope: "col", class: "number"}, "Photograph"),
-          cut ? h("th", {scope: "col", class: "number"}, which) : null,
-        ),
-      ),
-      h(
-        "tbody",
-        null,
-        rowsOf(evaluation, cut).map(([key, name, found, simulated]) =>
-          h(
-            "tr",
-            {key, "data-measure": key},
-            h("th", {scope: "row"}, name),
-            h("td", {class: "number"}, found),
-            cut ? h("td", {class: "number"}, simulated) : null,
-          ),
-        ),
-      ),
-    ),
+    h(DataTable, {
+      key: "table",
+      head: ["Measured", "Photograph", ...(cut ? [which] : [])],
+      rows: rowsOf(evaluation, cut),
+      keyName: "data-measure",
+    }),
     h(
       "p",
       {class: "about", key: "about"},
@@ -399,26 +378,7 @@ function Key() {
   return h(
     "ul",
     {class: "key on-photo"},
-    lines.map((line) =>
-      h(
-        "li",
-        {key: line.label},
-        h(
-          "svg",
-          {class: "swatch-line", viewBox: "0 0 22 6", "aria-hidden": "true"},
-          h("line", {
-            x1: 0,
-            y1: 3,
-            x2: 22,
-            y2: 3,
-            stroke: line.colour,
-            "stroke-width": 2,
-            "stroke-dasharray": (line.dash || []).join(" "),
-          }),
-        ),
-        line.label,
-      ),
-    ),
+    lines.map((curve) => h("li", {key: curve.label}, h(Swatch, {curve}), curve.label)),
   );
 }
 

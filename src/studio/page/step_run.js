@@ -121,14 +121,12 @@ function Last({isOn}) {
 
 function Moment() {
   const {moment} = state;
-  if (!moment || !isNumber(moment.time_s)) return null;
-  const tip = moment.tip || moment.path;
-  const at = Array.isArray(tip) ? `, tip at ${tip.map(place).join(", ")} mm` : "";
+  if (!moment) return null;
   return h(
     "p",
     {"data-moment": moment.time_s},
-    `${spoken(moment.cut) || "Cut"}: ${moment.time_s.toFixed(2)} s${at}`,
-    isNumber(moment.removed_tets) ? `, ${moment.removed_tets} tets removed` : "",
+    `${spoken(moment.cut)}: ${moment.time_s.toFixed(2)} s, tip at ${moment.tip.map(place).join(", ")} mm`,
+    `, ${moment.removed_tets} tets removed`,
   );
 }
 

@@ -4,6 +4,7 @@ import {h} from "preact";
 import {state, setting, update, isFresh} from "./store.js";
 import {dropKept, keepAndRun, putBack, run, stop} from "./actions.js";
 import {Button, Choice, Problems, Section, Setting, Status} from "./widgets.js";
+import {Swatch} from "./contour_view.js";
 import {shareOfPart, whereRunIs} from "./run_parts.js";
 import {isRunning} from "./step_run.js";
 import {isAlike, isKept, kMostKept, labelOf, laidOver, lookOf, titleOf} from "./kept.js";
@@ -156,12 +157,7 @@ function KeptOne({one}) {
 }
 
 function KeptSwatch({one}) {
-  const {colour, dash} = lookOf(one);
-  return h(
-    "svg",
-    {class: "swatch-line", viewBox: "0 0 22 6", "aria-hidden": "true"},
-    h("line", {x1: 0, y1: 3, x2: 22, y2: 3, stroke: colour, "stroke-width": 2.5, "stroke-dasharray": dash.join(" ")}),
-  );
+  return h(Swatch, {curve: {...lookOf(one), width: 2.5}});
 }
 
 // --- Numbers. ---

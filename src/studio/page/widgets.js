@@ -181,11 +181,11 @@ export function Numbers({label, names, unit, value, step, onChange, problem, hin
 
 /** The problem of the last change or call that concerns a setting, or null. */
 export function problemAt(key) {
-  const concerns = (problem) =>
-    problem &&
-    problem.path &&
-    (problem.path === key || problem.path.startsWith(`${key}[`) || problem.path.startsWith(`${key}.`));
-  return Object.values(state.problems).find(concerns) || null;
+  return Object.values(state.problems).find((problem) => problem && concerns(problem, key)) || null;
+}
+
+function concerns({path}, key) {
+  return path && (path === key || path.startsWith(`${key}[`) || path.startsWith(`${key}.`));
 }
 
 // What the input shows: also a value that was refused, until another one is accepted.
@@ -264,12 +264,7 @@ export function StepLinks({steps}) {
 
 /** What went wrong in calls, unless it stands beside an input of this panel (`shown`: their keys). */
 export function Problems({calls, shown = []}) {
-  const isShown = (problem) =>
-    shown.some(
-      (key) =>
-        problem.path &&
-        (problem.path === key || problem.path.startsWith(`${key}[`) || problem.path.startsWith(`${key}.`)),
-    );
+  const isShown = (problem) => shown.some((key) => concerns(problem, key));
   const messages = calls.map((name) => (state.problems[name] ? state.problems[name].message : null)),
     isFirst = (problem, k) => messages.indexOf(problem.message) === k; // calls may end alike
   const found = calls
@@ -368,19 +363,42 @@ function Target() {
 
 /** Whatever a summary holds, as names and values. */
 export function Facts({facts}) {
-  if (!facts) return null;
-  if (typeof facts === "string") return h("p", {class: "soft"}, facts);
-  if (Array.isArray(facts))
-    return h(
-      "ul",
-      {class: "facts"},
-      facts.map((fact, k) => h("li", {key: k}, String(fact))),
-    );
   const shown = Object.entries(facts).filter(([, value]) => value !== null && typeof value !== "object");
   return h(
     "dl",
     {class: "facts"},
     shown.map(([key, value]) => [h("dt", null, nameOf(key)), h("dd", null, factText(key, value))]),
+  );
+}
+
+/** A table of numbers. @param head  the columns' names  @param rows  [key, name, ...numbers]: as many numbers are shown
+ *  as there are columns for  @param keyName  the attribute that holds a row's key */
+export function DataTable({head: [first, ...columns], rows, keyName}) {
+  return h(
+    "table",
+    {class: "numbers-table"},
+    h(
+      "thead",
+      null,
+      h(
+        "tr",
+        null,
+        h("th", {scope: "col"}, first),
+        columns.map((name) => h("th", {key: name, scope: "col", class: "number"}, name)),
+      ),
+    ),
+    h(
+      "tbody",
+      null,
+      rows.map(([key, name, ...numbers]) =>
+        h(
+          "tr",
+          {key, [keyName]: key},
+          h("th", {scope: "row"}, name),
+          columns.map((column, k) => h("td", {key: column, class: "number"}, numbers[k])),
+        ),
+      ),
+    ),
   );
 }
 
