@@ -131,11 +131,11 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
 }
 
 int run_step(const CommonOptions& options, const std::function<steps::StepResult(const steps::StepContext&)>& step,
-             const std::function<void(const CommonOptions&, const nlohmann::ordered_json&)>& print) {
+             const std::function<void(const nlohmann::ordered_json&)>& print) {
   Console console(options.level());
   Workers workers(options.threads);
   const steps::StepResult found = step({options.context(), workers, console, options.start});
-  if (!found.json.is_null()) print(options, found.json);
+  if (!found.json.is_null()) options.json || !print ? print_result(options, found.json) : print(found.json);
   return found.is_acceptable ? kDone : kNotAcceptable;
 }
 

@@ -52,9 +52,6 @@ struct CommonOptions {
   std::string command_line;
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 
-  [[nodiscard]] double wall_s() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  }
   [[nodiscard]] Console::Level level() const {
     return quiet ? Console::Level::Quiet : verbose ? Console::Level::Verbose : Console::Level::Normal;
   }
@@ -116,11 +113,11 @@ class Application {
 /// Prints the result: with --json the one object on standard output, else a short table.
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result);
 /// Runs a step of the library with the command's console and threads, and prints its result.
-/// @param print  print_result, or another summary for a person. @returns the exit status.
+/// @param print  another summary than print_result's for a person. @returns the exit status.
 int run_step(const CommonOptions& options, const std::function<steps::StepResult(const steps::StepContext&)>& step,
-             const std::function<void(const CommonOptions&, const nlohmann::ordered_json&)>& print = print_result);
-/// As print_result for a whole loop: for a person, the main measures of the two cuts side by side.
-void print_study(const CommonOptions& options, const nlohmann::ordered_json& result);
+             const std::function<void(const nlohmann::ordered_json&)>& print = {});
+/// Prints a whole loop for a person: the main measures of the two cuts side by side.
+void print_study(const nlohmann::ordered_json& result);
 
 void add_forecast(Application& application);
 void add_assess(Application& application);

@@ -26,7 +26,8 @@ void add_cut_options(CLI::App& verb, CutOptions& options) {
       ->check(CLI::Range(0.0, kLongestCheckpointS));
 }
 
-CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut) {
+steps::CaseRequest case_request(const std::filesystem::path& case_path, Stage until, const CommonOptions& options,
+                                const CutOptions& cut) {
   CaseFile file = read_case_with_inputs(case_path);
   if (cut.frames) file.settings.frames = *cut.frames;
   if (cut.method) file.settings.compensation.method = *cut.method;
@@ -35,12 +36,7 @@ CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions&
                     problems[0].hint)
         .in_file(case_path.string());
   }
-  return file;
-}
-
-steps::CaseRequest case_request(const std::filesystem::path& case_path, Stage until, const CommonOptions& options,
-                                const CutOptions& cut) {
-  return {case_as_asked(case_path, cut), output_of(case_path, options), {until, cut.must_resume, cut.checkpoint_s}};
+  return {std::move(file), output_of(case_path, options), {until, cut.must_resume, cut.checkpoint_s}};
 }
 
 int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,

@@ -23,10 +23,8 @@ void add_cut_options(CLI::App& verb, CutOptions& options);
 /// Adds --method to a verb that corrects the path.
 void add_compensation_method(CLI::App& verb, CutOptions& options);
 
-/// Reads the case, checks that the files it names exist, and replaces settings that the command line gives.
-[[nodiscard]] CaseFile case_as_asked(const std::filesystem::path& case_path, const CutOptions& cut);
-
-/// Returns the case, its output, and the last stage to run.
+/// Reads the case, checks that the files it names exist, and replaces settings that the command line gives. Returns the
+/// case, its output, and the last stage to run.
 [[nodiscard]] steps::CaseRequest case_request(const std::filesystem::path& case_path, Stage until,
                                               const CommonOptions& options, const CutOptions& cut);
 

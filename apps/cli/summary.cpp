@@ -106,8 +106,7 @@ void print_risks(const nlohmann::ordered_json& result) {
 
 }  // namespace
 
-void print_study(const CommonOptions& options, const nlohmann::ordered_json& result) {
-  if (options.json) return print_result(options, result);
+void print_study(const nlohmann::ordered_json& result) {
   fmt::print("{:<36} {:>16} {:>16}\n", "simulated", "as planned", "corrected");
   for (const StudyLine& line : kStudyLines) {
     fmt::print("{:<36} {:>16} {:>16}\n", line.text, shown_at(result, "before", line.pointer), shown_at(result, "after", line.pointer));

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-
 namespace incise::cli {
 namespace {
 
@@ -39,29 +37,25 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
         return steps::assess_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), calibration,
                                   chosen.registration, context);
       },
-      [](const CommonOptions& common, const nlohmann::ordered_json& json) {
-        common.json ? print_result(common, json) : print_assessment(json);
-      });
+      print_assessment);
 }
 
 }  // namespace
 
 void add_assess(Application& application) {
-  auto chosen = std::make_shared<AssessOptions>();
-  CLI::App* verb =
-      application.add_verb("assess",
-                           "Advise whether to cut this specimen along the corrected path: compensate, cut_as_planned "
-                           "(both exit status 0) or do_not_use (4). States the correction's gain, averaged over a "
-                           "calibration's posterior, its uncertainty, and how far the specimen lies from those of the "
-                           "calibration",
-                           "incise assess specimen --calibration calibration/calibration.json --registration "
-                           "registration/registration.json -o out",
-                           [chosen](const CommonOptions& options) { return assess_case(*chosen, options); });
-  verb->add_option("case", chosen->case_path, "Case file, or a folder with case.yaml")->required();
-  add_calibrated_options(*verb, chosen->calibrated)->required();
-  verb->add_option("--registration", chosen->registration, "registration.json of `incise register` for this specimen")
+  auto [verb, a] = application.add_verb<AssessOptions>(
+      "assess",
+      "Advise whether to cut this specimen along the corrected path: compensate, cut_as_planned (both exit status 0) "
+      "or do_not_use (4). States the correction's gain, averaged over a calibration's posterior, its uncertainty, and "
+      "how far the specimen lies from those of the calibration",
+      "incise assess specimen --calibration calibration/calibration.json --registration "
+      "registration/registration.json -o out",
+      assess_case);
+  verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
+  add_calibrated_options(*verb, a.calibrated)->required();
+  verb->add_option("--registration", a.registration, "registration.json of `incise register` for this specimen")
       ->required();
-  add_cut_options(*verb, chosen->cut);
+  add_cut_options(*verb, a.cut);
 }
 
 }  // namespace incise::cli

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 
 namespace incise::cli {
 namespace {
@@ -61,29 +60,27 @@ int calibrate_cases(const CalibrateArguments& arguments, const CommonOptions& op
 }  // namespace
 
 void add_calibrate(Application& application) {
-  auto arguments = std::make_shared<CalibrateArguments>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<CalibrateArguments>(
       "calibrate",
       "Find the simulated speed and dullness that reproduce photographed cuts. fit: from the signed error round the "
       "ring, with few simulations; gives a posterior, and states which parameters the data identify. paper: 25 pairs, "
       "scored as in the paper. If interrupted, it keeps every finished simulation, and the same command continues",
-      "incise calibrate s1 s2 --observed s1/cut.json s2/cut.json -o calibration",
-      [arguments](const CommonOptions& options) { return calibrate_cases(*arguments, options); });
-  verb->add_option("case", arguments->request.cases,
+      "incise calibrate s1 s2 --observed s1/cut.json s2/cut.json -o calibration", calibrate_cases);
+  verb->add_option("case", a.request.cases,
                    "Case files, or folders with case.yaml: how each specimen was held, and its path")
       ->required();
-  verb->add_option("--observed", arguments->request.observed,
+  verb->add_option("--observed", a.request.observed,
                    "Files of `incise evaluate PHOTO -o`, one for each case in the same order; up in the picture is "
                    "+y of the case (seen along -z)")
       ->required();
-  verb->add_option("--method", arguments->method, "fit or paper")->check(CLI::IsMember({"fit", "paper"}));
-  verb->add_option("--stretch-force-n", arguments->request.forces_n,
+  verb->add_option("--method", a.method, "fit or paper")->check(CLI::IsMember({"fit", "paper"}));
+  verb->add_option("--stretch-force-n", a.request.forces_n,
                    "Pull measured on each specimen when stretched; it determines the stiffness to 5 %")
       ->check(above_zero("--stretch-force-n"));
-  verb->add_option("--registration", arguments->request.registrations,
+  verb->add_option("--registration", a.request.registrations,
                    "Files of `incise register`, one for each case; the calibration keeps them, and `incise assess` "
                    "compares further specimens with them");
-  add_options_of(*verb, arguments->request.request, "speeds_mm_s", "dullnesses", "drag_lengths_mm",
+  add_options_of(*verb, a.request.request, "speeds_mm_s", "dullnesses", "drag_lengths_mm",
                  "second_drag_lengths_mm");
 }
 

@@ -73,9 +73,7 @@ int run(const CompareArguments& arguments, const CommonOptions& options) {
         found = std::move(done.found);
         return std::move(done.step);
       },
-      [&](const CommonOptions& common, const nlohmann::ordered_json& json) {
-        common.json ? print_result(common, json) : print_tests(found);
-      });
+      [&](const nlohmann::ordered_json&) { print_tests(found); });
 }
 
 }  // namespace

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-
 namespace incise::cli {
 namespace {
 
@@ -74,23 +72,20 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
 }
 
 void add_compensate(Application& application) {
-  auto chosen = std::make_shared<CompensateOptions>();
-  CLI::App* verb =
-      application.add_verb("compensate", "Correct the path by the simulated error and verify it by cutting again",
-                           "incise compensate specimen -o out",
-                           [chosen](const CommonOptions& options) { return compensate(*chosen, options); });
-  verb->add_option("case", chosen->case_path, "Case file, or a folder with case.yaml")->required();
-  add_cut_options(*verb, chosen->cut);
-  add_compensation_method(*verb, chosen->cut);
-  verb->add_flag("--no-verify", chosen->is_unverified,
+  auto [verb, a] =
+      application.add_verb<CompensateOptions>("compensate", "", "incise compensate specimen -o out", compensate);
+  verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
+  add_cut_options(*verb, a.cut);
+  add_compensation_method(*verb, a.cut);
+  verb->add_flag("--no-verify", a.is_unverified,
                  "Method profile: move the path and stop, without any simulated cut. The path then has the caution "
                  "not_simulated, or the refusal that it gets before any cut");
   verb->add_flag(
-      "--robust", chosen->is_robust,
+      "--robust", a.is_robust,
       "Also choose the path of least expected error over the calibration's posterior, with a probability of a close "
       "margin anywhere of at most --max-probability: OUT/robust/path.json. Exit status 4 if there is none");
-  add_calibrated_options(*verb, chosen->calibrated);
-  verb->add_option("--max-probability", chosen->max_probability,
+  add_calibrated_options(*verb, a.calibrated);
+  verb->add_option("--max-probability", a.max_probability,
                    "Greatest allowed probability of less tissue than the close margin anywhere, with --robust")
       ->check(between("--max-probability", 1e-4, 0.9999));
 }

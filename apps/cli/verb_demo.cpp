@@ -7,8 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <memory>
-
 namespace incise::cli {
 namespace {
 
@@ -27,25 +25,26 @@ std::filesystem::path specimen_for(const std::filesystem::path& folder, const Co
   return folder;
 }
 
+int demo(const CutOptions& cut, const CommonOptions& options) {
+  require_accepted_ids(cut.accepted);
+  const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
+  const std::filesystem::path specimen = specimen_for(root / "specimen", options);
+  try {
+    return run_whole_loop(specimen, root, options, cut);
+  } catch (const StagesKept&) {
+    throw;
+  } catch (const Cancelled& error) {
+    throw StagesKept(error.what(), fmt::format("the specimen in {} is kept", specimen.string()));
+  }
+}
+
 }  // namespace
 
 void add_demo(Application& application) {
-  auto cut = std::make_shared<CutOptions>();
-  CLI::App* verb = application.add_verb("demo", "", "incise demo -o demo", [cut](const CommonOptions& options) {
-    require_accepted_ids(cut->accepted);
-    const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
-    const std::filesystem::path specimen = specimen_for(root / "specimen", options);
-    try {
-      return run_whole_loop(specimen, root, options, *cut);
-    } catch (const StagesKept&) {
-      throw;
-    } catch (const Cancelled& error) {
-      throw StagesKept(error.what(), fmt::format("the specimen in {} is kept", specimen.string()));
-    }
-  });
-  add_cut_options(*verb, *cut);
-  add_compensation_method(*verb, *cut);
-  add_accept(*verb, cut->accepted);
+  auto [verb, cut] = application.add_verb<CutOptions>("demo", "", "incise demo -o demo", demo);
+  add_cut_options(*verb, cut);
+  add_compensation_method(*verb, cut);
+  add_accept(*verb, cut.accepted);
 }
 
 }  // namespace incise::cli

@@ -2,12 +2,9 @@
 #include "options.hpp"
 #include "verdict_gate.hpp"
 
-#include <incise/core/error.hpp>
-#include <incise/core/nearest_name.hpp>
 #include <incise/core/units.hpp>
 #include <incise/steps/robot_steps.hpp>
 #include <incise/storage/case_file.hpp>
-#include <incise/storage/own_files.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <memory>
 #include <numeric>
 
 namespace incise::cli {
@@ -53,26 +52,22 @@ int forecast_case(const ForecastOptions& chosen, const CommonOptions& options) {
         return steps::forecast_case(case_request(chosen.case_path, Stage::Plan, options, {}), chosen.calibration,
                                     context);
       },
-      [](const CommonOptions& common, const nlohmann::ordered_json& json) {
-        common.json ? print_result(common, json) : print_forecast(json);
-      });
+      print_forecast);
 }
 
 }  // namespace
 
 void add_forecast(Application& application) {
-  auto chosen = std::make_shared<ForecastOptions>();
-  CLI::App* verb = application.add_verb(
+  auto [verb, a] = application.add_verb<ForecastOptions>(
       "forecast",
       "Forecast the error of this ring from photographs of earlier cuts: the expected error by direction, with and "
       "without the simulation, its uncertainty, and in which respects the ring lies outside those photographed",
-      "incise forecast specimen --calibration calibration/calibration.json -o out",
-      [chosen](const CommonOptions& options) { return forecast_case(*chosen, options); });
+      "incise forecast specimen --calibration calibration/calibration.json -o out", forecast_case);
   verb->add_option(
-          "case", chosen->case_path,
+          "case", a.case_path,
           "Case file, or a folder with case.yaml; its Young's modulus must be the one derived from the measured pull")
       ->required();
-  verb->add_option("--calibration", chosen->calibration, "calibration.json of `incise calibrate --method fit`")
+  verb->add_option("--calibration", a.calibration, "calibration.json of `incise calibrate --method fit`")
       ->required();
 }
 

@@ -7,7 +7,6 @@
 #include <incise/storage/path_schema.hpp>
 
 #include <cstdio>
-#include <ostream>
 
 namespace incise::cli {
 namespace {

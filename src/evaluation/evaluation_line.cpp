@@ -15,15 +15,6 @@ struct Abreast {
   double lateral_mm = 0.0;  ///< signed, positive = left
 };
 
-/// Arc length at the start of each segment, and the whole length at the end.
-std::vector<double> arc_lengths(const Contour& line) {
-  std::vector<double> lengths{0.0};
-  for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
-    lengths.push_back(lengths.back() + (line.points[i + 1] - line.points[i]).norm());
-  }
-  return lengths;
-}
-
 /// Unit direction of a segment. @pre its ends differ.
 Vec3 direction_of(const Contour& line, std::size_t segment) {
   return (line.points[segment + 1] - line.points[segment]).normalized();
@@ -69,7 +60,7 @@ Evaluation evaluate_line(const std::optional<Contour>& incision, const Contour& 
   if (!incision) return result;
   INCISE_REQUIRE(!incision->is_closed, "expected an open incision, found a closed one");
 
-  const std::vector<double> arc = arc_lengths(intended);
+  const std::vector<double> arc = arclengths_mm(intended.points);
   const double length = arc.back();
   const Vec3 up = -settings.approach.normalized();
   const Contour points = resample_by_step(*incision, settings.step_mm);

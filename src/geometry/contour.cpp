@@ -47,6 +47,13 @@ double length_mm(const Contour& contour) {
   return length;
 }
 
+std::vector<double> arclengths_mm(const Points& points) {
+  std::vector<double> lengths;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    lengths.push_back(i == 0 ? 0.0 : lengths.back() + (points[i] - points[i - 1]).norm());
+  return lengths;
+}
+
 Contour resample(const Contour& contour, std::size_t count) {
   const std::size_t least = contour.is_closed ? 3 : 2;
   INCISE_REQUIRE(contour.points.size() >= 2,

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 
 namespace incise {
 namespace {
@@ -36,15 +35,10 @@ class FebioInput {
   std::string text() {
     require_known_law(model_, "febio");
     pugi::xml_document document;
-    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
-    pugi::xml_node root = document.append_child("febio_spec");
-    root.append_attribute("version") = "4.0";
+    with(document.append_child(pugi::node_declaration), {{"version", "1.0"}, {"encoding", "UTF-8"}});
+    pugi::xml_node root = with(document.append_child("febio_spec"), {{"version", "4.0"}});
     add_comments(root);
-    pugi::xml_node module = root.append_child("Module");
-    module.append_attribute("type") = "solid";
-    add_text(module, "units", "mm-kg-s");
+    add_text(with(root.append_child("Module"), {{"type", "solid"}}), "units", "mm-kg-s");
     add_control(root);
     material_ = root.append_child("Material");
     mesh_ = root.append_child("Mesh");
@@ -107,13 +101,11 @@ class FebioInput {
     add_text(control, "analysis", "STATIC");
     add_text(control, "time_steps", fmt::format("{}", kLoadSteps));
     add_text(control, "step_size", fmt::format("{}", 1.0 / kLoadSteps));
-    pugi::xml_node solver = control.append_child("solver");
-    solver.append_attribute("type") = "solid";
+    pugi::xml_node solver = with(control.append_child("solver"), {{"type", "solid"}});
     add_text(solver, "dtol", "1e-06");
     add_text(solver, "etol", "1e-08");
     add_text(solver, "rtol", "1e-06");
-    pugi::xml_node stepper = control.append_child("time_stepper");
-    stepper.append_attribute("type") = "default";
+    pugi::xml_node stepper = with(control.append_child("time_stepper"), {{"type", "default"}});
     add_text(stepper, "max_retries", "10");
     add_text(stepper, "opt_iter", "15");
     add_text(stepper, "dtmin", "0.001");
@@ -121,18 +113,14 @@ class FebioInput {
   }
 
   void add_nodes(const std::string& name, const Points& points) {
-    pugi::xml_node nodes = mesh_.append_child("Nodes");
-    nodes.append_attribute("name") = name.c_str();
+    pugi::xml_node nodes = with(mesh_.append_child("Nodes"), {{"name", name}});
     for (const Vec3& p : points) {
       add_text(nodes, "node", text_of(p, ",")).append_attribute("id") = static_cast<unsigned long long>(++node_count_);
     }
   }
 
   pugi::xml_node add_elements(const std::string& name, const char* type) {
-    pugi::xml_node elements = mesh_.append_child("Elements");
-    elements.append_attribute("type") = type;
-    elements.append_attribute("name") = name.c_str();
-    return elements;
+    return with(mesh_.append_child("Elements"), {{"type", type}, {"name", name}});
   }
 
   void add_element(pugi::xml_node elements, const std::string& corners) {
@@ -140,15 +128,14 @@ class FebioInput {
   }
 
   void add_surface(const std::string& name, const std::vector<std::string>& triangles) {
-    pugi::xml_node surface = mesh_.append_child("Surface");
-    surface.append_attribute("name") = name.c_str();
+    pugi::xml_node surface = with(mesh_.append_child("Surface"), {{"name", name}});
     for (std::size_t i = 0; i < triangles.size(); ++i) {
       add_text(surface, "tri3", triangles[i]).append_attribute("id") = static_cast<unsigned long long>(i + 1);
     }
   }
 
   void add_node_set(const std::string& name, const std::string& numbers) {
-    add_text(mesh_, "NodeSet", numbers).append_attribute("name") = name.c_str();
+    with(add_text(mesh_, "NodeSet", numbers), {{"name", name}});
   }
 
   void add_tissue() {
@@ -158,16 +145,12 @@ class FebioInput {
       add_element(elements,
                   fmt::format("{},{},{},{}", t[0].index() + 1, t[1].index() + 1, t[2].index() + 1, t[3].index() + 1));
     }
-    pugi::xml_node domain = domains_.append_child("SolidDomain");
-    domain.append_attribute("name") = kTissue;
-    domain.append_attribute("mat") = kTissue;
+    with(domains_.append_child("SolidDomain"), {{"name", kTissue}, {"mat", kTissue}});
   }
 
   pugi::xml_node add_material(const std::string& name, const char* type, double density) {
-    pugi::xml_node material = material_.append_child("material");
-    material.append_attribute("id") = ++material_count_;
-    material.append_attribute("name") = name.c_str();
-    material.append_attribute("type") = type;
+    pugi::xml_node material = with(material_.append_child("material"),
+                                   {{"id", fmt::format("{}", ++material_count_)}, {"name", name}, {"type", type}});
     add_text(material, "density", fmt::format("{}", density));
     return material;
   }
@@ -187,10 +170,8 @@ class FebioInput {
       add_text(material, name, fmt::format("{}", values.front()));
       return;
     }
-    add_text(material, name, map).append_attribute("type") = "map";
-    pugi::xml_node data = data_.append_child("ElementData");
-    data.append_attribute("name") = map;
-    data.append_attribute("elem_set") = kTissue;
+    with(add_text(material, name, map), {{"type", "map"}});
+    pugi::xml_node data = with(data_.append_child("ElementData"), {{"name", map}, {"elem_set", kTissue}});
     for (std::size_t i = 0; i < values.size(); ++i) {
       add_text(data, "e", fmt::format("{}", values[i])).append_attribute("lid") =
           static_cast<unsigned long long>(i + 1);
@@ -217,11 +198,7 @@ class FebioInput {
   }
 
   pugi::xml_node add_boundary_condition(const std::string& name, const char* type, const std::string& node_set) {
-    pugi::xml_node bc = boundary_.append_child("bc");
-    bc.append_attribute("name") = name.c_str();
-    bc.append_attribute("type") = type;
-    bc.append_attribute("node_set") = node_set.c_str();
-    return bc;
+    return with(boundary_.append_child("bc"), {{"name", name}, {"type", type}, {"node_set", node_set}});
   }
 
   /// Uses forces on vertices instead of FEBio's own tractions and body forces: they keep direction and size, as in
@@ -230,21 +207,15 @@ class FebioInput {
     std::vector<std::int32_t> vertices;
     for (const VertexLoad& load : loads) vertices.push_back(load.vertex.value);
     add_node_set(name, numbers_from_1(vertices));
-    pugi::xml_node data = data_.append_child("NodeData");
-    data.append_attribute("name") = (name + "_mn").c_str();
-    data.append_attribute("node_set") = name.c_str();
-    data.append_attribute("data_type") = "vec3";
+    pugi::xml_node data = with(data_.append_child("NodeData"),
+                               {{"name", name + "_mn"}, {"node_set", name}, {"data_type", "vec3"}});
     for (std::size_t i = 0; i < loads.size(); ++i) {
       add_text(data, "node", text_of(loads[i].force_mn, ",")).append_attribute("lid") =
           static_cast<unsigned long long>(i + 1);
     }
-    pugi::xml_node node = loads_.append_child("nodal_load");
-    node.append_attribute("name") = name.c_str();
-    node.append_attribute("type") = "nodal_force";
-    node.append_attribute("node_set") = name.c_str();
-    pugi::xml_node value = add_text(node, "value", name + "_mn");
-    value.append_attribute("lc") = 1;
-    value.append_attribute("type") = "map";
+    pugi::xml_node node = with(loads_.append_child("nodal_load"),
+                               {{"name", name}, {"type", "nodal_force"}, {"node_set", name}});
+    with(add_text(node, "value", name + "_mn"), {{"lc", "1"}, {"type", "map"}});
   }
 
   void add_loads() {
@@ -301,26 +272,21 @@ class FebioInput {
       add_element(elements, triangles.back());
     }
     add_surface(name + "_surface", triangles);
-    pugi::xml_node pair = mesh_.append_child("SurfacePair");
-    pair.append_attribute("name") = (name + "_pair").c_str();
+    pugi::xml_node pair = with(mesh_.append_child("SurfacePair"), {{"name", name + "_pair"}});
     add_text(pair, "primary", "skin");
     add_text(pair, "secondary", name + "_surface");
-    pugi::xml_node domain = domains_.append_child("ShellDomain");
-    domain.append_attribute("name") = name.c_str();
-    domain.append_attribute("mat") = name.c_str();
+    pugi::xml_node domain = with(domains_.append_child("ShellDomain"), {{"name", name}, {"mat", name}});
     add_text(domain, "shell_thickness", "0.001");
     add_text(add_material(name, "rigid body", 1e-6), "center_of_mass", "0,0,0");
-    pugi::xml_node fixed = rigid_.append_child("rigid_bc");
-    fixed.append_attribute("name") = (name + "_fixed").c_str();
-    fixed.append_attribute("type") = "rigid_fixed";
+    pugi::xml_node fixed =
+        with(rigid_.append_child("rigid_bc"), {{"name", name + "_fixed"}, {"type", "rigid_fixed"}});
     add_text(fixed, "rb", name);
     for (const char* dof : {"Rx_dof", "Ry_dof", "Rz_dof", "Ru_dof", "Rv_dof", "Rw_dof"}) add_text(fixed, dof, "1");
     add_comment(contact_,
                 "Frictionless and unilateral. FEBio chooses the penalty and refines it (augmented Lagrangian).");
-    pugi::xml_node contact = contact_.append_child("contact");
-    contact.append_attribute("name") = name.c_str();
-    contact.append_attribute("type") = "sliding-elastic";
-    contact.append_attribute("surface_pair") = (name + "_pair").c_str();
+    pugi::xml_node contact =
+        with(contact_.append_child("contact"),
+             {{"name", name}, {"type", "sliding-elastic"}, {"surface_pair", name + "_pair"}});
     add_text(contact, "laugon", "AUGLAG");
     add_text(contact, "tolerance", "0.05");
     add_text(contact, "gaptol", "0.05");
@@ -331,22 +297,18 @@ class FebioInput {
   }
 
   static void add_load_curve_and_output(pugi::xml_node root) {
-    pugi::xml_node curve = root.append_child("LoadData").append_child("load_controller");
-    curve.append_attribute("id") = 1;
-    curve.append_attribute("type") = "loadcurve";
+    pugi::xml_node curve =
+        with(root.append_child("LoadData").append_child("load_controller"), {{"id", "1"}, {"type", "loadcurve"}});
     add_text(curve, "interpolate", "LINEAR");
     add_text(curve, "extend", "CONSTANT");
     pugi::xml_node points = curve.append_child("points");
     add_text(points, "pt", "0,0");
     add_text(points, "pt", "1,1");
     pugi::xml_node output = root.append_child("Output");
-    pugi::xml_node plot = output.append_child("plotfile");
-    plot.append_attribute("type") = "febio";
-    for (const char* name : {"displacement", "stress"}) plot.append_child("var").append_attribute("type") = name;
-    pugi::xml_node log = output.append_child("logfile").append_child("node_data");
-    log.append_attribute("data") = "ux;uy;uz";
-    log.append_attribute("file") = "displacement.csv";
-    log.append_attribute("delim") = ",";
+    pugi::xml_node plot = with(output.append_child("plotfile"), {{"type", "febio"}});
+    for (const char* name : {"displacement", "stress"}) with(plot.append_child("var"), {{"type", name}});
+    with(output.append_child("logfile").append_child("node_data"),
+         {{"data", "ux;uy;uz"}, {"file", "displacement.csv"}, {"delim", ","}});
   }
 
   const InterchangeCase& specimen_;

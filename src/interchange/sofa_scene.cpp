@@ -27,37 +27,28 @@ class SofaScene {
     require_known_law(model_, "sofa");
     pugi::xml_document document;
     add_comments(document);
-    pugi::xml_node root = document.append_child("Node");
-    root.append_attribute("name") = "root";
-    set(root, "dt", kStepS);
-    set(root, "gravity", text_of(specimen_.gravity_mm_s2));
+    pugi::xml_node root = with(
+        document.append_child("Node"),
+        {{"name", "root"}, {"dt", fmt::format("{}", kStepS)}, {"gravity", text_of(specimen_.gravity_mm_s2)}});
     root.append_child("DefaultAnimationLoop");
-    pugi::xml_node tissue = root.append_child("Node");
-    tissue.append_attribute("name") = "tissue";
+    pugi::xml_node tissue = with(root.append_child("Node"), {{"name", "tissue"}});
     add_solver(tissue);
     add_mesh(tissue);
     add_law(tissue);
     for (const HeldSet& held : held_sets(model_)) add_held(tissue, held);
     for (std::size_t i = 0; i < model_.constraints.size(); ++i) add_loads_and_supports(tissue, i);
-    pugi::xml_node exporter = add(tissue, "VTKExporter", "Sofa.Component.IO.Mesh");
-    exporter.append_attribute("filename") = "sofa_result";
-    exporter.append_attribute("listening") = 1;
-    exporter.append_attribute("edges") = 0;
-    exporter.append_attribute("tetras") = 1;
-    exporter.append_attribute("exportEveryNumberOfSteps") = kSteps;
-    for (const std::string& name : plugins_) {
-      pugi::xml_node plugin = root.insert_child_before("RequiredPlugin", root.child("DefaultAnimationLoop"));
-      plugin.append_attribute("name") = name.c_str();
-    }
+    with(add(tissue, "VTKExporter", "Sofa.Component.IO.Mesh"),
+         {{"filename", "sofa_result"},
+          {"listening", "1"},
+          {"edges", "0"},
+          {"tetras", "1"},
+          {"exportEveryNumberOfSteps", fmt::format("{}", kSteps)}});
+    for (const std::string& name : plugins_)
+      with(root.insert_child_before("RequiredPlugin", root.child("DefaultAnimationLoop")), {{"name", name}});
     return xml_text(document);
   }
 
  private:
-  template <class Number>
-  static void set(pugi::xml_node node, const char* name, const Number& value) {
-    node.append_attribute(name) = fmt::format("{}", value).c_str();
-  }
-
   pugi::xml_node add(pugi::xml_node parent, const char* component, const char* plugin) {
     plugins_.insert(plugin);
     return parent.append_child(component);
@@ -91,14 +82,10 @@ class SofaScene {
   }
 
   void add_solver(pugi::xml_node tissue) {
-    pugi::xml_node solver = add(tissue, "EulerImplicitSolver", "Sofa.Component.ODESolver.Backward");
-    set(solver, "rayleighStiffness", 0.1);
-    set(solver, "rayleighMass", 0.1);
-    pugi::xml_node linear = add(tissue, "CGLinearSolver", "Sofa.Component.LinearSolver.Iterative");
-    linear.append_attribute("template") = "GraphScattered";
-    set(linear, "iterations", 800);
-    set(linear, "tolerance", 1e-18);
-    set(linear, "threshold", 1e-18);
+    with(add(tissue, "EulerImplicitSolver", "Sofa.Component.ODESolver.Backward"),
+         {{"rayleighStiffness", "0.1"}, {"rayleighMass", "0.1"}});
+    with(add(tissue, "CGLinearSolver", "Sofa.Component.LinearSolver.Iterative"),
+         {{"template", "GraphScattered"}, {"iterations", "800"}, {"tolerance", "1e-18"}, {"threshold", "1e-18"}});
   }
 
   void add_mesh(pugi::xml_node tissue) {
@@ -108,19 +95,14 @@ class SofaScene {
     for (const Tet& t : model_.mesh.tets) {
       tets += fmt::format("{}{} {} {} {}", tets.empty() ? "" : "  ", t[0].value, t[1].value, t[2].value, t[3].value);
     }
-    pugi::xml_node topology =
-        add(tissue, "TetrahedronSetTopologyContainer", "Sofa.Component.Topology.Container.Dynamic");
-    topology.append_attribute("name") = "mesh";
-    topology.append_attribute("position") = positions.c_str();
-    topology.append_attribute("tetrahedra") = tets.c_str();
-    tissue.append_child("TetrahedronSetGeometryAlgorithms").append_attribute("template") = "Vec3";
-    pugi::xml_node state = add(tissue, "MechanicalObject", "Sofa.Component.StateContainer");
-    state.append_attribute("name") = "state";
-    state.append_attribute("template") = "Vec3";
-    state.append_attribute("position") = "@mesh.position";
-    pugi::xml_node mass = add(tissue, "DiagonalMass", "Sofa.Component.Mass");
-    set(mass, "massDensity", units::kg_mm3_from_kg_m3(model_.material.density_kg_m3));
-    mass.append_attribute("topology") = "@mesh";
+    with(add(tissue, "TetrahedronSetTopologyContainer", "Sofa.Component.Topology.Container.Dynamic"),
+         {{"name", "mesh"}, {"position", positions}, {"tetrahedra", tets}});
+    with(tissue.append_child("TetrahedronSetGeometryAlgorithms"), {{"template", "Vec3"}});
+    with(add(tissue, "MechanicalObject", "Sofa.Component.StateContainer"),
+         {{"name", "state"}, {"template", "Vec3"}, {"position", "@mesh.position"}});
+    with(add(tissue, "DiagonalMass", "Sofa.Component.Mass"),
+         {{"massDensity", fmt::format("{}", units::kg_mm3_from_kg_m3(model_.material.density_kg_m3))},
+          {"topology", "@mesh"}});
   }
 
   void add_law(pugi::xml_node tissue) {
@@ -135,23 +117,20 @@ class SofaScene {
                   "Stable Neo-Hookean as SOFA has it: without the logarithmic term of Smith, de Goes and Kim (2018), "
                   "the same at "
                   "small strain. Parameters: mu, lambda.");
-      pugi::xml_node law =
-          add(tissue, "TetrahedronHyperelasticityFEMForceField", "Sofa.Component.SolidMechanics.FEM.HyperElastic");
-      law.append_attribute("materialName") = "StableNeoHookean";
-      law.append_attribute("ParameterSet") =
-          fmt::format("{} {}", model_.lame.front().mu_kpa, model_.lame.front().lambda_kpa).c_str();
+      with(add(tissue, "TetrahedronHyperelasticityFEMForceField", "Sofa.Component.SolidMechanics.FEM.HyperElastic"),
+           {{"materialName", "StableNeoHookean"},
+            {"ParameterSet", fmt::format("{} {}", model_.lame.front().mu_kpa, model_.lame.front().lambda_kpa)}});
       return;
     }
     add_comment(tissue,
                 "The same law as incise: linear elasticity about the polar rotation of each tet's deformation "
                 "gradient. SOFA's other "
                 "corotational force fields take their rotation from edges of the tet and differ by up to millimetres.");
-    pugi::xml_node law =
-        add(tissue, "FastTetrahedralCorotationalForceField", "Sofa.Component.SolidMechanics.FEM.Elastic");
-    law.append_attribute("method") = "polar";
-    law.append_attribute("topology") = "@mesh";
-    law.append_attribute("youngModulus") = fmt::format("{}", fmt::join(stiffness.youngs_modulus_kpa, " ")).c_str();
-    law.append_attribute("poissonRatio") = fmt::format("{}", fmt::join(stiffness.poissons_ratio, " ")).c_str();
+    with(add(tissue, "FastTetrahedralCorotationalForceField", "Sofa.Component.SolidMechanics.FEM.Elastic"),
+         {{"method", "polar"},
+          {"topology", "@mesh"},
+          {"youngModulus", fmt::format("{}", fmt::join(stiffness.youngs_modulus_kpa, " "))},
+          {"poissonRatio", fmt::format("{}", fmt::join(stiffness.poissons_ratio, " "))}});
   }
 
   void add_held(pugi::xml_node tissue, const HeldSet& held) {
@@ -160,18 +139,17 @@ class SofaScene {
     const char* component = is_moved   ? "LinearMovementProjectiveConstraint"
                             : is_whole ? "FixedProjectiveConstraint"
                                        : "PartialFixedProjectiveConstraint";
-    pugi::xml_node node = add(tissue, component, "Sofa.Component.Constraint.Projective");
-    node.append_attribute("name") = fmt::format("constraint_{}_{}", held.constraint, letters(held.axes)).c_str();
-    node.append_attribute("template") = "Vec3";
-    node.append_attribute("indices") = fmt::format("{}", fmt::join(held.vertices, " ")).c_str();
+    pugi::xml_node node = with(add(tissue, component, "Sofa.Component.Constraint.Projective"),
+                               {{"name", fmt::format("constraint_{}_{}", held.constraint, letters(held.axes))},
+                                {"template", "Vec3"},
+                                {"indices", fmt::format("{}", fmt::join(held.vertices, " "))}});
     if (is_moved) {
       // An axis that an earlier constraint holds has the same prescribed displacement, so moving all three is correct.
-      node.append_attribute("keyTimes") = fmt::format("0 {} {}", kRampS, kHeldUntilS).c_str();
       const std::string end = text_of(held.displacement_mm);
-      node.append_attribute("movements") = fmt::format("0 0 0  {}  {}", end, end).c_str();
+      with(node, {{"keyTimes", fmt::format("0 {} {}", kRampS, kHeldUntilS)},
+                  {"movements", fmt::format("0 0 0  {}  {}", end, end)}});
     } else if (!is_whole) {
-      node.append_attribute("fixedDirections") =
-          fmt::format("{:d} {:d} {:d}", held.axes[0], held.axes[1], held.axes[2]).c_str();
+      with(node, {{"fixedDirections", fmt::format("{:d} {:d} {:d}", held.axes[0], held.axes[1], held.axes[2])}});
     }
   }
 
@@ -186,10 +164,8 @@ class SofaScene {
       }
       add_comment(tissue, fmt::format("Traction of {} kPa, as forces on vertices that keep their direction",
                                       text_of(traction->traction_kpa)));
-      pugi::xml_node node = add(tissue, "ConstantForceField", "Sofa.Component.MechanicalLoad");
-      node.append_attribute("name") = name.c_str();
-      node.append_attribute("indices") = indices.c_str();
-      node.append_attribute("forces") = forces.c_str();
+      with(add(tissue, "ConstantForceField", "Sofa.Component.MechanicalLoad"),
+           {{"name", name}, {"indices", indices}, {"forces", forces}});
       return;
     }
     const auto* support = std::get_if<SupportConstraint>(&model_.constraints[index]);
@@ -207,12 +183,13 @@ class SofaScene {
         "Support: pushes vertices behind the plane, never pulls. SOFA has one stiffness for all vertices, the mean of "
         "incise's, which are proportional to each vertex's share of the surface. Depths behind the plane differ by "
         "hundredths of a mm.");
-    pugi::xml_node node = add(tissue, "PlaneForceField", "Sofa.Component.MechanicalLoad");
-    node.append_attribute("name") = name.c_str();
-    node.append_attribute("normal") = text_of(plane.normal).c_str();
-    set(node, "d", plane.normal.dot(plane.point_mm));
-    set(node, "stiffness", sum / static_cast<double>(std::max<std::size_t>(plane.stiffness.size(), 1)));
-    set(node, "damping", 0);
+    const double stiffness = sum / static_cast<double>(std::max<std::size_t>(plane.stiffness.size(), 1));
+    with(add(tissue, "PlaneForceField", "Sofa.Component.MechanicalLoad"),
+         {{"name", name},
+          {"normal", text_of(plane.normal)},
+          {"d", fmt::format("{}", plane.normal.dot(plane.point_mm))},
+          {"stiffness", fmt::format("{}", stiffness)},
+          {"damping", "0"}});
   }
 
   const InterchangeCase& specimen_;

@@ -75,6 +75,12 @@ void require_known_law(const TissueModel& model, const char* format) {
                   "Neither format has a law with fibres like these");
 }
 
+pugi::xml_node with(pugi::xml_node node,
+                    std::initializer_list<std::pair<const char*, std::string>> attributes) {
+  for (const auto& [name, text] : attributes) node.append_attribute(name) = text.c_str();
+  return node;
+}
+
 void add_comment(pugi::xml_node parent, const std::string& text) {
   // Two hyphens would end a comment early; titles come from outside.
   std::string safe = text;

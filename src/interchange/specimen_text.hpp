@@ -5,7 +5,9 @@
 #include <pugixml.hpp>
 
 #include <array>
+#include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace incise {
@@ -37,6 +39,9 @@ struct Stiffness {
 /// Refuses laws that neither format has: fibres, and Yeoh's stiffening. @throws CaseError
 void require_known_law(const TissueModel& model, const char* format);
 
+/// Gives a node attributes, in this order. @returns the node.
+pugi::xml_node with(pugi::xml_node node,
+                    std::initializer_list<std::pair<const char*, std::string>> attributes);
 void add_comment(pugi::xml_node parent, const std::string& text);
 /// Appends an element that contains a text.
 pugi::xml_node add_text(pugi::xml_node parent, const char* name, const std::string& text);

@@ -3,7 +3,6 @@
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
-#include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/surface_io.hpp>
@@ -13,8 +12,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <ostream>
 
 namespace incise {
 namespace {
@@ -134,21 +131,17 @@ Contour read_slicer_markup(const std::filesystem::path& path, bool is_closed) {
   return contour;
 }
 
-bool ends_with(const std::string& text, std::string_view ending) {
-  return text.size() >= ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
-}
-
 }  // namespace
 
 Contour read_contour(const std::filesystem::path& path, bool is_closed) {
   const std::string name = io_detail::lower_case(path.filename().string());
   Contour contour;
-  bool says_closed = ends_with(name, ".mrk.json");
-  if (ends_with(name, ".csv"))
+  bool says_closed = name.ends_with(".mrk.json");
+  if (name.ends_with(".csv"))
     contour = read_csv(path, is_closed);
-  else if (ends_with(name, ".vtp"))
+  else if (name.ends_with(".vtp"))
     contour = read_polyline(path, is_closed, says_closed);
-  else if (ends_with(name, ".mrk.json"))
+  else if (name.ends_with(".mrk.json"))
     contour = read_slicer_markup(path, is_closed);
   else
     throw DataError(path, "", fmt::format("the ending '{}'", path.extension().string()), ".csv, .vtp or .mrk.json");

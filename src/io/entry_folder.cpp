@@ -3,19 +3,12 @@
 #include <incise/io/entry_folder.hpp>
 #include <incise/io/input_file.hpp>
 
-#include <fstream>
-#include <ostream>
-
 namespace incise {
 
 namespace {
 
 bool begins_as_an_entry(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string begin(kCacheMagic.size(), '\0');
-  in.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-  begin.resize(static_cast<std::size_t>(in.gcount()));
-  return kCacheMagic.starts_with(begin);  // a truncated entry is damaged, not foreign
+  return kCacheMagic.starts_with(beginning_of(file, kCacheMagic.size()));  // a truncated entry is damaged, not foreign
 }
 
 }  // namespace
@@ -51,9 +44,7 @@ void EntryFolder::save(const std::string& name, const std::string& bytes) {
   const std::filesystem::path folder = place_of(name).parent_path();
   std::filesystem::create_directories(folder, error);
   if (error) throw DataError(folder, "", error.message(), "a folder that can be written");
-  write_atomically(place_of(name), [&bytes](std::ostream& out) {
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  });
+  write_atomically(place_of(name), bytes);
 }
 
 void EntryFolder::remove(const std::string& name) {

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <optional>
 #include <string>
@@ -31,10 +30,7 @@ constexpr std::size_t kLongestHeader = 64 << 10;  // bytes; a header that lists 
 
 /// Returns the trimmed lines in the first kLongestHeader bytes of a file.
 std::vector<std::string> header_lines(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string text(kLongestHeader, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string text = beginning_of(path, kLongestHeader);
   std::vector<std::string> lines;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
@@ -143,6 +139,14 @@ void require_regular_file(const fs::path& path, std::uint64_t most_bytes) {
 
 void require_file_or_folder(const fs::path& path) {
   if (!fs::is_directory(status_of(path))) require_regular_file(path);
+}
+
+std::string beginning_of(const fs::path& path, std::size_t most_bytes) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string text(most_bytes, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  return text;
 }
 
 std::vector<fs::path> input_files(const fs::path& path) {

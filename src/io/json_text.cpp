@@ -1,5 +1,4 @@
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
 
 #include <nlohmann/json.hpp>

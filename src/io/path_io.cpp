@@ -145,44 +145,20 @@ void write_tool_path(const std::filesystem::path& file, const ToolPath& path, co
   write_json(file, document);
 }
 
-namespace {
-
-/// The verdict in a path's file, with the digest of path and verdict.
-struct StatedVerdict {
-  Verdict verdict;
-  std::string digest;
-};
-
-std::optional<StatedVerdict> stated_in(const ordered_json& document, const std::filesystem::path& file) {
-  if (!document.contains(kVerdict)) return std::nullopt;
-  StatedVerdict stated;
-  JsonReader reader(document.at(kVerdict), file, "/verdict");
-  reader.begin({});
-  describe(reader, stated.verdict);
-  reader(kDigest, stated.digest);
-  return stated;
-}
-
-}  // namespace
-
 Verdict read_path_verdict(const std::filesystem::path& file) {
   const ordered_json document = read_json(file);
   const ToolPath path = path_in(document, file);
-  const std::optional<StatedVerdict> stated = stated_in(document, file);
-  if (!stated) return refusals_of({}, "the path's file holds no verdict: no simulated cut along it is known");
-  if (stated->digest == digest_of(path, stated->verdict)) return stated->verdict;
-  return refusals_of(stated->verdict,
+  if (!document.contains(kVerdict))
+    return refusals_of({}, "the path's file holds no verdict: no simulated cut along it is known");
+  Verdict verdict;
+  std::string digest;
+  JsonReader reader(document.at(kVerdict), file, "/verdict");
+  reader.begin({});
+  describe(reader, verdict);
+  reader(kDigest, digest);
+  if (digest == digest_of(path, verdict)) return verdict;
+  return refusals_of(verdict,
                      "the path was changed after its cut was simulated: the verdict in its file is of another path");
-}
-
-void require_path_unchanged(const std::filesystem::path& file) {
-  const ordered_json document = read_json(file);
-  const ToolPath path = path_in(document, file);
-  const std::optional<StatedVerdict> stated = stated_in(document, file);
-  if (!stated) return;
-  const std::string digest = digest_of(path, stated->verdict);
-  if (stated->digest != digest)
-    throw DataError(file, "/verdict/digest_sha256", "that of another path", digest + ", that of the path in this file");
 }
 
 }  // namespace incise

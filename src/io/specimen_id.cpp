@@ -1,6 +1,7 @@
 #include "io/number_text.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/manifest.hpp>
 #include <incise/io/specimen_id.hpp>
@@ -9,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
 
 namespace incise {
 namespace {
@@ -35,10 +35,7 @@ std::string id_in_json(const fs::path& file) {
 
 /// Returns the id after `mark` in the file's first lines; empty if there is none.
 std::string id_in_header(const fs::path& file, std::string_view mark) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string text(kHeaderBytes, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string text = beginning_of(file, kHeaderBytes);
   const std::size_t place = text.find(mark);
   if (place == std::string::npos || place >= text.find("end_header")) return "";
   const std::size_t begin = place + mark.size();

@@ -40,7 +40,6 @@ class TextCursor {
   /// Returns the next `size` bytes unchanged. @throws DataError if fewer are left.
   std::string_view bytes(std::size_t size, std::string_view what);
 
-  [[nodiscard]] std::size_t position() const { return at_; }
   [[nodiscard]] std::size_t bytes_left() const { return text_.size() - at_; }
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// @throws DataError "path: line n: found …, expected …"

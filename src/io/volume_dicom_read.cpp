@@ -4,6 +4,7 @@
 #include "io/volume_quiet.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/io/input_file.hpp>
 
 #include <fmt/format.h>
 #include <gdcmPixmapReader.h>
@@ -31,11 +32,7 @@ struct FolderContent {
 };
 
 FolderContent scan_folder(const fs::path& folder, Monitor& monitor) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_regular_file()) files.push_back(entry.path());
-  }
-  std::sort(files.begin(), files.end());
+  const std::vector<fs::path> files = input_files(folder);
   FolderContent content;
   for (std::size_t f = 0; f < files.size(); ++f) {
     throw_if_cancelled(monitor, "reading CT");

@@ -20,8 +20,6 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <cctype>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -34,11 +32,6 @@ namespace fs = std::filesystem;
 
 // NIfTI keeps its axes in single precision, MetaImage files are often written with six digits.
 constexpr double kOrthonormalTolerance = 1e-4;
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 itk::ImageIOBase::Pointer make_image_io(VolumeFormat format) {
   switch (format) {
@@ -116,7 +109,7 @@ std::string text_header(const fs::path& path, const std::string& last_key) {
     header += line + '\n';
     if (!last_key.empty() && line.rfind(last_key, 0) == 0) break;
   }
-  return lower_case(header);
+  return io_detail::lower_case(header);
 }
 
 /// Refuses a header without voxel spacing, for which ITK would silently assume 1 mm.
@@ -204,7 +197,7 @@ void require_plain_meta_header(const fs::path& path) {
     if (line.size() > kLongestLine) break;
     const std::size_t equals = line.find('=');
     if (equals == std::string::npos) continue;
-    const std::string key = lower_case(std::string(io_detail::trimmed(std::string_view(line).substr(0, equals))));
+    const std::string key = io_detail::lower_case(io_detail::trimmed(std::string_view(line).substr(0, equals)));
     const std::string value(io_detail::trimmed(std::string_view(line).substr(equals + 1)));
     if (key == "ndims") {
       const auto dimensions = io_detail::to_integer(value);
@@ -217,10 +210,7 @@ void require_plain_meta_header(const fs::path& path) {
 
 /// Refuses an NRRD file without a blank line after its header, which holds no voxels, unless the header is detached.
 void require_ended_nrrd_header(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string text(64 << 10, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
+  const std::string text = beginning_of(path, 64 << 10);
   const bool is_ended = text.find("\n\n") != std::string::npos || text.find("\r\n\r\n") != std::string::npos;
   if (is_ended || input_files(path).size() > 1) return;
   throw DataError(path, "header", "no blank line after the header", "a header, a blank line and the voxels", "Is the file cut short?");
@@ -274,7 +264,7 @@ void set_whole_region(itk::ImageIOBase& io) {
 }  // namespace
 
 std::optional<VolumeFormat> format_of_name(const fs::path& path) {
-  const std::string name = lower_case(path.filename().string());
+  const std::string name = io_detail::lower_case(path.filename().string());
   const auto ends = [&name](const std::string& end) {
     return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
   };

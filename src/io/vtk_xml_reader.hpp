@@ -28,7 +28,6 @@ class VtkXmlFile {
   /// pieces.
   VtkXmlFile(const std::filesystem::path& path, const std::string& kind);
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Returns a count stated by the piece, such as NumberOfPoints; 0 if not stated. @throws DataError if it is no count.
   [[nodiscard]] std::size_t count(const char* attribute) const;
   /// Returns the coordinates, converted to LPS if the file is stamped SPACE=RAS.

@@ -47,12 +47,9 @@ std::vector<PlacedError> by_angle(const ReportIncision& incision, const Vec3& ap
 }
 
 std::vector<PlacedError> by_arc(const ReportIncision& incision) {
+  const std::vector<double> arc = arclengths_mm(incision.incision.points);
   std::vector<PlacedError> result;
-  double arc = 0.0;
-  for (std::size_t i = 0; i < incision.incision.points.size(); ++i) {
-    if (i > 0) arc += (incision.incision.points[i] - incision.incision.points[i - 1]).norm();
-    result.emplace_back(arc, incision.signed_error_mm[i]);
-  }
+  for (std::size_t i = 0; i < arc.size(); ++i) result.emplace_back(arc[i], incision.signed_error_mm[i]);
   return result;
 }
 

@@ -1,5 +1,4 @@
 #include "report/sections.hpp"
-#include "report/svg.hpp"
 #include "report/tables.hpp"
 
 #include <incise/report/line_plot.hpp>

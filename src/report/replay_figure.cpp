@@ -77,13 +77,6 @@ struct Course {
   std::vector<double> at;
 };
 
-/// Returns the distance travelled by the tip at each point, mm.
-std::vector<double> along(const Points& tip_mm) {
-  std::vector<double> way{0.0};
-  for (std::size_t i = 1; i < tip_mm.size(); ++i) way.push_back(way.back() + (tip_mm[i] - tip_mm[i - 1]).norm());
-  return way;
-}
-
 void draw_curve(SvgWriter& svg, const Course& course, const std::vector<double>& values, const Vec2& corner,
                 double height, std::string_view name, std::optional<std::size_t> mark = {}) {
   const double high = rounded_up(std::max(1e-3, 1.05 * *std::max_element(values.begin(), values.end())));
@@ -112,7 +105,7 @@ std::string replay_figure_svg(const ReplayPicture& picture) {
   draw_paths(svg, picture);
   draw_curve(svg, {"time, s", picture.time_s}, picture.tip_speed_mm_s, {420.0, 44.0}, 110.0, "tip speed, mm/s");
   if (picture.intended_mm.empty()) return svg.finish();
-  draw_curve(svg, {"path of the tip, mm", along(picture.tip_mm)}, picture.deviation_mm, {420.0, 226.0}, 110.0,
+  draw_curve(svg, {"path of the tip, mm", arclengths_mm(picture.tip_mm)}, picture.deviation_mm, {420.0, 226.0}, 110.0,
              "deviation, mm", worst_of(picture));
   return svg.finish();
 }

@@ -116,9 +116,6 @@ void check_animation(Findings& findings, const ReportAnimation& animation) {
                  "tool diameter is not positive");
   findings.check(std::isfinite(animation.tool_length_mm) && animation.tool_length_mm > 0.0, place,
                  "tool length is not positive");
-  if (!animation.platform_point_mm) return;
-  findings.check(animation.platform_point_mm->allFinite(), place + ": platform point", "is not finite");
-  findings.direction(animation.platform_normal, place + ": platform normal");
 }
 
 void check_incision(Findings& findings, const ReportIncision& incision) {

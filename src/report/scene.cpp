@@ -135,10 +135,6 @@ Json animation_json(const ReportAnimation& animation, std::size_t budget) {
     if (line.contour.points.size() >= 2) json["lines"].push_back(line_json(line));
   }
   json["tool"] = {{"diameter_mm", animation.tool_diameter_mm}, {"length_mm", animation.tool_length_mm}};
-  if (animation.platform_point_mm) {
-    json["platform"] = {{"point", json_of(*animation.platform_point_mm)},
-                        {"normal", json_of(animation.platform_normal)}};
-  }
   return json;
 }
 

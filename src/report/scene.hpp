@@ -15,8 +15,7 @@ namespace incise {
 /// 1/65535 of the box, some micrometres); vertices that no skin uses are left out; numbers are little endian, as
 /// base64. {name, low: [3], step_mm: [3], vertices: V, index_bytes: 2|4, frames: [{time_s, phase, positions, outer,
 /// kerf, tip?, axis}],
-///  lines: [{label, color, closed, points: [...]}], tool: {diameter_mm, length_mm}, platform?: {point, normal},
-///  total_frames}
+///  lines: [{label, color, closed, points: [...]}], tool: {diameter_mm, length_mm}, total_frames}
 /// @param budget  bytes of base64 that one animation may take. If all frames need more, evenly spaced ones are kept,
 /// with the first and the last.
 [[nodiscard]] nlohmann::ordered_json animation_json(const ReportAnimation& animation, std::size_t budget);

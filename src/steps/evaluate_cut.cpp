@@ -4,7 +4,6 @@
 #include <incise/imaging/photo_doubts.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
-#include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/picture_io.hpp>
 #include <incise/io/specimen_id.hpp>

@@ -32,7 +32,6 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <ostream>
 
 namespace incise::steps {
 namespace {
@@ -650,9 +649,7 @@ void write_report_and_figures(const ReportData& data, const fs::path& page) {
   const std::vector<ReportIncision> drawn = drawn_incisions(data);
   if (drawn.empty()) return;
   std::filesystem::create_directories(folder);
-  const auto write = [&folder](const char* name, const std::string& content) {
-    write_atomically(folder / name, [&content](std::ostream& out) { out << content; });
-  };
+  const auto write = [&folder](const char* name, const std::string& text) { write_atomically(folder / name, text); };
   const FigureStyle style = common_style(drawn, data.approach, data.axis_names);
   write("contours.svg", contour_figure_svg(drawn.front(), style));
   if (drawn.size() > 1) write("contours_corrected.svg", contour_figure_svg(drawn.back(), style));

@@ -3,7 +3,6 @@
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
 #include <incise/core/units.hpp>
-#include <incise/io/atomic_file.hpp>
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>

@@ -5,7 +5,6 @@
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/grid_cloud.hpp>
-#include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/path_io.hpp>
 #include <incise/io/picture_io.hpp>
@@ -18,7 +17,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 namespace incise::steps {
 namespace {

@@ -1,5 +1,3 @@
-#include "kerf_files.hpp"
-
 #include <incise/core/error.hpp>
 #include <incise/cutting/divided_mesh.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -7,6 +5,8 @@
 #include <incise/io/json_file.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/pvd_io.hpp>
+#include <incise/io/surface_io.hpp>
+#include <incise/io/table_io.hpp>
 #include <incise/mechanics/statics.hpp>
 #include <incise/storage/result_json.hpp>
 #include <incise/storage/run_folder.hpp>
@@ -187,6 +187,30 @@ void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, 
   }
   write_pvd(folder / "frames.pvd", series);
   write_json(folder / "frames" / "tool.json", {{"frames", tools}});
+}
+
+void write_if_there(const std::filesystem::path& file, const std::optional<Contour>& contour) {
+  if (contour) write_contour_csv(file, *contour);
+}
+
+/// Writes the kerf's files beside `incision.json`: depth.csv and, as far as they were measured, kerf.vtp,
+/// centerline_DEPTHmm.csv, lag.csv, centerline_final.csv, inner_edge_reference.csv.
+void write_kerf_files(const std::filesystem::path& folder, const KerfMeasures& kerf) {
+  if (!kerf.body.surface.triangles.empty()) write_vtp(folder / "kerf.vtp", kerf.body.surface);
+  for (const KerfLayer& layer : kerf.layers)
+    write_if_there(folder / fmt::format("centerline_{}mm.csv", layer.depth_mm), layer.centerline);
+  write_contour_csv(folder / "depth.csv", kerf.depth.profile.course,
+                    {{"arclength_mm", kerf.depth.profile.arclength_mm},
+                     {"depth_mm", kerf.depth.profile.depth_mm},
+                     {"planned_mm", kerf.depth.planned_at_mm}});
+  if (kerf.drag) {
+    write_csv_columns(folder / "lag.csv", {{"time_s", kerf.drag->time_s},
+                                           {"arclength_mm", kerf.drag->arclength_mm},
+                                           {"lag_mm", kerf.drag->lag_mm},
+                                           {"drift_mm", kerf.drag->drift_mm}});
+  }
+  write_if_there(folder / "centerline_final.csv", kerf.final_centerline);
+  write_if_there(folder / "inner_edge_reference.csv", kerf.inner_edge_reference);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 
 namespace incise {
 namespace {
@@ -109,12 +108,8 @@ nlohmann::ordered_json contour_json(const Contour& contour) {
 }
 
 nlohmann::ordered_json points_json(const Evaluation& evaluation) {
-  const Points& points = evaluation.errors.points.points;
   nlohmann::ordered_json json = contour_json(evaluation.errors.points);
-  std::vector<double> arclengths;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    arclengths.push_back(i == 0 ? 0.0 : arclengths.back() + (points[i] - points[i - 1]).norm());
-  json["arclength_mm"] = std::move(arclengths);
+  json["arclength_mm"] = arclengths_mm(evaluation.errors.points.points);
   json.update(to_json(PointErrors{evaluation.errors.signed_error_mm, evaluation.clock_h}));
   return json;
 }

@@ -1,6 +1,5 @@
-#include "storage/json_digest.hpp"
-
 #include <incise/core/error.hpp>
+#include <incise/core/sha256.hpp>
 #include <incise/io/camera_scale.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/io/transform_json.hpp>
@@ -18,13 +17,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-}  // namespace
+constexpr const char* kDigestKey = "digest_sha256";
 
-void seal_registration(Json& document) {
-  document[kDigestKey] = digest_of(document);
+/// Returns the SHA-256 of the document's compact JSON without its digest.
+std::string digest_of(Json document) {
+  document.erase(kDigestKey);
+  return sha256_of_text(document.dump());
 }
-
-namespace {
 
 /// @returns whether the document carries its digest.  @throws DataError if the digest is wrong.
 bool has_its_digest(const Json& document, const std::filesystem::path& file) {
@@ -96,6 +95,10 @@ void require_no_contradiction(const Json& document, const RegistrationRecord& re
 }
 
 }  // namespace
+
+void seal_registration(Json& document) {
+  document[kDigestKey] = digest_of(document);
+}
 
 RegistrationRecord read_registration(const std::filesystem::path& file) {
   const Json document = read_json(file);

@@ -358,28 +358,19 @@ void RunFolder::mesh(const ProductNote& note, const MeshProduct& product) {
 
 void RunFolder::stretched(const ProductNote& note, const TissueModel& model, const StaticResult& result) {
   write(note, [&](const std::filesystem::path& to) {
-    write_vtu(to / "rest.vtu", rest_mesh(model, result.state));
-    write_vtu(to / "deformed.vtu", deformed_mesh(model, result.state));
+    TetMesh mesh = model.mesh;
+    DataArray displacement{3, {}};
+    for (std::size_t v = 0; v < result.state.positions.size(); ++v) {
+      const Vec3 moved = result.state.positions[v] - model.mesh.vertices[v];
+      displacement.values.insert(displacement.values.end(), {moved.x(), moved.y(), moved.z()});
+    }
+    mesh.point_data["displacement_mm"] = std::move(displacement);
+    mesh.cell_data["von_mises_kpa"] = {1, von_mises_kpa(model, result.state)};
+    write_vtu(to / "rest.vtu", mesh);
+    mesh.vertices = result.state.positions;
+    write_vtu(to / "deformed.vtu", mesh);
     write_json(to / "deform.json", to_json(result));
   });
-}
-
-TetMesh rest_mesh(const TissueModel& model, const TissueState& state) {
-  TetMesh mesh = model.mesh;
-  DataArray displacement{3, {}};
-  for (std::size_t v = 0; v < state.positions.size(); ++v) {
-    const Vec3 moved = state.positions[v] - model.mesh.vertices[v];
-    displacement.values.insert(displacement.values.end(), {moved.x(), moved.y(), moved.z()});
-  }
-  mesh.point_data["displacement_mm"] = std::move(displacement);
-  mesh.cell_data["von_mises_kpa"] = {1, von_mises_kpa(model, state)};
-  return mesh;
-}
-
-TetMesh deformed_mesh(const TissueModel& model, const TissueState& state) {
-  TetMesh mesh = rest_mesh(model, state);
-  mesh.vertices = state.positions;
-  return mesh;
 }
 
 void RunFolder::plan(const ProductNote& note, const ToolPath& path) {

@@ -26,7 +26,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <optional>
 #include <set>
 
 namespace incise::studio {

@@ -26,14 +26,6 @@ Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// Arc length of each point from the first.
-std::vector<double> arclengths(const Points& points) {
-  std::vector<double> at;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    at.push_back(i == 0 ? 0.0 : at.back() + (points[i] - points[i - 1]).norm());
-  return at;
-}
-
 Json numbers_json(const Case& settings, const SimulatedCut& cut) {
   const auto& error = cut.centerline.abs_error_mm;
   Json json;
@@ -200,7 +192,7 @@ Json cut_json(const Case& settings, const SimulatedCut& cut, const ToolPath& fol
   json["ended"] = ended(cut.outcome);
   json["centerline"] = contour_json(cut.incision.centerline);
   json["inner_edge"] = contour_json(cut.incision.inner_edge);
-  json["errors"] = {{"arclength_mm", arclengths(errors.points.points)}, {"signed_mm", errors.signed_error_mm}};
+  json["errors"] = {{"arclength_mm", arclengths_mm(errors.points.points)}, {"signed_mm", errors.signed_error_mm}};
   json["depth"] = {{"arclength_mm", depth.profile.arclength_mm},
                    {"planned_mm", depth.planned_at_mm},
                    {"reached_mm", depth.profile.depth_mm}};

@@ -86,7 +86,6 @@ ReportAnimation RingFixture::animation(const std::string& name, int steps) const
                   {LineKind::IntendedPath, ring([](double a) { return tumor_radius(a) + 5.0; })},
                   {LineKind::CorrectedPath, ring([](double a) { return tumor_radius(a) + 5.6 - 0.5 * std::cos(a); })},
                   {LineKind::KerfMidLine, incision(name, 0.3, 0.6).incision}};
-  result.platform_point_mm = Vec3(0, 0, 0);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <incise/geometry/types.hpp>
 
 #include <span>
+#include <vector>
 
 namespace incise {
 
@@ -19,6 +20,9 @@ inline void describe(Visitor& v, Contour& c) {
 
 /// Length, mm, with the segment that closes a closed contour.
 [[nodiscard]] double length_mm(const Contour& contour);
+
+/// Returns the arc length of each point from the first, mm; the segment that closes a closed contour is in none.
+[[nodiscard]] std::vector<double> arclengths_mm(const Points& points);
 
 /// Returns `count` points evenly spaced by arc length, starting at the first point; an open contour keeps both ends.
 /// @pre at least 2 points, positive length, count >= 2 (3 if closed).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -23,6 +24,9 @@ void require_regular_file(const std::filesystem::path& path, std::uint64_t most_
 
 /// As require_regular_file, but a folder passes too.
 void require_file_or_folder(const std::filesystem::path& path);
+
+/// Returns the first `most_bytes` bytes of a file, or all of a shorter one; nothing if it cannot be read.
+[[nodiscard]] std::string beginning_of(const std::filesystem::path& path, std::size_t most_bytes);
 
 /// Returns every file that reading `path` opens, in a fixed order. For a file: the file itself, then the data files
 /// that its header names (ElementDataFile of .mhd and .mha; `data file` or `datafile` of .nhdr and .nrrd, in all three

@@ -4,7 +4,6 @@
 #include <incise/geometry/tool_path.hpp>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -52,9 +51,5 @@ void write_tool_path(const std::filesystem::path& file, const ToolPath& path, co
 /// stored verdict remain too.
 /// @throws DataError as read_tool_path, or if the verdict is damaged.
 [[nodiscard]] Verdict read_path_verdict(const std::filesystem::path& file);
-
-/// Checks that a path's file has not changed since its verdict was written; a file without a verdict passes.
-/// @throws DataError if the digest does not match the path and verdict, or as read_path_verdict.
-void require_path_unchanged(const std::filesystem::path& file);
 
 }  // namespace incise

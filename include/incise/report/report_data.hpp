@@ -87,8 +87,6 @@ struct ReportAnimation {
   std::vector<ReportLine> lines;    ///< in the stretched tissue before the cut
   double tool_diameter_mm = 1.0;
   double tool_length_mm = 25.0;
-  std::optional<Vec3> platform_point_mm;  ///< a point of the plane on which the tissue lies; none: not shown
-  Vec3 platform_normal = Vec3::UnitZ();   ///< unit; towards the tissue
 };
 
 /// One measured incision: before or after compensation.

@@ -133,10 +133,4 @@ void take_products(const std::filesystem::path& from, const std::filesystem::pat
 /// their cell data `cell`.
 inline constexpr const char* kUncutFile = "frames/uncut.vtu";
 
-/// Returns the mesh at rest, with the results of a deformation as point data `displacement_mm` and cell data
-/// `von_mises_kpa`.
-[[nodiscard]] TetMesh rest_mesh(const TissueModel& model, const TissueState& state);
-/// Returns the same mesh with its vertices at their current positions.
-[[nodiscard]] TetMesh deformed_mesh(const TissueModel& model, const TissueState& state);
-
 }  // namespace incise

@@ -1,5 +1,5 @@
 "use strict";
-// The player: the tissue's skin frame by frame, the needle, the paths, and the platform.
+// The player: the tissue's skin frame by frame, the needle, and the paths.
 
 class CutView {
   constructor(host, animations, frame) {
@@ -25,7 +25,6 @@ class CutView {
     this.skins = this.decoded[which];
     this.makeTissue();
     this.makeTool();
-    this.makePlatform();
     this.controls.replaceChildren(this.playerRow(which), this.legendRow(), viewRow(viewer));
 
     const last = this.scene.frames.length - 1;
@@ -70,25 +69,6 @@ class CutView {
     this.toolSwitch = new THREE.Group();  // the legend shows and hides this one, frames the inner one
     this.toolSwitch.add(this.tool);
     this.group.add(this.toolSwitch);
-  }
-
-  makePlatform() {
-    this.platform = null;
-    if (!this.scene.platform) return;
-    const normal = new THREE.Vector3(...this.scene.platform.normal).normalize();
-    const size = 10 * Math.ceil(0.13 * Math.hypot(...this.scene.step_mm) * 65535);
-    this.platform = new THREE.Group();
-    const plate = new THREE.Mesh(new THREE.PlaneGeometry(size, size), new THREE.MeshBasicMaterial(
-      {color: 0x9fb2c2, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false}));
-    const grid = new THREE.GridHelper(size, size / 10, 0x8497a6, 0xb4c1cb);
-    grid.rotation.x = Math.PI / 2;
-    this.platform.add(plate, grid);
-    this.platform.quaternion.setFromUnitVectors(new THREE.Vector3(0, 0, 1), normal);
-    // Centred below the tissue, on the plane.
-    const point = new THREE.Vector3(...this.scene.platform.point);
-    const middle = new THREE.Vector3(...this.scene.low.map((low, k) => low + 0.5 * 65535 * this.scene.step_mm[k]));
-    this.platform.position.copy(middle.addScaledVector(normal, normal.dot(point.sub(middle))));
-    this.group.add(this.platform);
   }
 
   /** Geometries of a frame, decoded when first looked at. */
@@ -178,7 +158,6 @@ class CutView {
     }
     if (this.scene.frames.some((frame) => frame.tip)) add("needle", "#8d979f", [this.toolSwitch], true);
     add("element edges", "#5a2b27", [this.outerLines, this.kerfLines], false);
-    if (this.platform) add("platform, 10 mm grid", "#9fb2c2", [this.platform], true, true);
     return row;
   }
 }
