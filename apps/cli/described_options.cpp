@@ -123,7 +123,11 @@ CLI::Option* add_option_of(CLI::App& verb, std::string_view field, const std::fu
   OneField known(field);
   walk(known);
   INCISE_REQUIRE(known.is_found, fmt::format("expected a field of these settings, found {}", field));
-  const std::string help = known.expected.empty() ? known.meaning : fmt::format("{} {}", known.meaning, known.expected);
+  std::string help = known.meaning;
+  if (!known.expected.empty()) {
+    if (help.ends_with('.')) help.pop_back();
+    help += fmt::format(" ({})", known.expected);
+  }
   CLI::Option* option = verb.add_option_function<std::vector<std::string>>(
       option_name(field),
       [walk, name = std::string(field)](const std::vector<std::string>& texts) {

@@ -40,7 +40,7 @@ void refuse_unknown_verb(const CLI::App& app, const std::string& word) {
     verbs.push_back(verb->get_name());
   }
   throw CaseError("command line", "verb", fmt::format("'{}'", word), fmt::format("one of {}", fmt::join(verbs, ", ")),
-                  fmt::format("Did you mean '{}'?", nearest_name(word, verbs)));
+                  did_you_mean(word, verbs));
 }
 
 /// strtod and CLI11 accept "nan" and "inf" as numbers, and no range check stops a NaN.

@@ -111,7 +111,7 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   options->command_line = command_line_;
   CLI::App* verb = group.add_subcommand(name, what);
   verb->footer("\nExample:\n  " + example + "\n");
-  const CLI::Option* given = verb->add_option("-o,--output", options->output, "File or folder to write");
+  const CLI::Option* given = verb->add_option("-o,--output", options->output, output_help(name));
   verb->add_flag("--json", options->json, "Print one JSON object on standard output");
   verb->add_flag("--quiet", options->quiet, "Print warnings only");
   verb->add_flag("--verbose", options->verbose, "Print more detail");

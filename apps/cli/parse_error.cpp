@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -41,6 +42,14 @@ const CLI::Option* option_named_in(const CLI::App& verb, const std::string& mess
     }
   }
   return nullptr;
+}
+
+/// Returns a description without its capital letter, unless it starts with an abbreviation such as DICOM.
+std::string within_sentence(std::string description) {
+  const auto is_upper = [](char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; };
+  if (description.size() < 2 || is_upper(description[1])) return description;
+  description[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(description[0])));
+  return description;
 }
 
 /// Returns a number unchanged, a word in quotes.
@@ -104,8 +113,9 @@ CaseError not_understood(const CLI::App& verb) {
   for (const CLI::Option* option : verb.get_options()) {
     if (option->get_name().starts_with('-')) names.push_back(option->get_name());
   }
+  const std::string meant = did_you_mean(first, names);
   return {kCommandLine, words_of(verb), quoted(first), "one of its options",
-          fmt::format("Did you mean '{}'? {}", nearest_name(first, names), hint_for(verb))};
+          fmt::format("{}{}{}", meant, meant.empty() ? "" : " ", hint_for(verb))};
 }
 
 CaseError no_verb(const CLI::App& group) {
@@ -128,7 +138,7 @@ CaseError as_case_error(const CLI::App& app, const CLI::ParseError& error) {
   if (kind == CLI::ExitCodes::ExtrasError) return not_understood(verb);
   const CLI::Option* option = option_named_in(verb, message);
   if (kind == CLI::ExitCodes::RequiredError && option != nullptr) {
-    return {kCommandLine, option->get_name(), "nothing", option->get_description(), hint_for(verb)};
+    return {kCommandLine, option->get_name(), "nothing", within_sentence(option->get_description()), hint_for(verb)};
   }
   if (kind == CLI::ExitCodes::RequiredError) return no_verb(verb);
   if (kind == CLI::ExitCodes::ArgumentMismatch && option != nullptr) return wrong_count(*option, verb);

@@ -19,6 +19,20 @@ std::string shown(const nlohmann::ordered_json& value) {
   return value.dump();
 }
 
+/// Prints the checks of a program as a table.
+void print_checks(const nlohmann::ordered_json& checks) {
+  fmt::print("{:<20} {:>12} {:>16}  {:<8} {}\n", "check", "found", "limit", "unit", "passed");
+  for (const auto& check : checks) {
+    const auto relation = check.at("relation").get<std::string>();
+    const bool is_yes_or_no = relation.empty();
+    const std::string found = is_yes_or_no ? (check.at("value") == 1.0 ? "yes" : "no") : shown(check.at("value"));
+    const std::string limit = is_yes_or_no ? "yes" : fmt::format("{} {}", relation, shown(check.at("limit")));
+    const char* failed = check.at("overridden").get<bool>() ? "overridden" : "NO";
+    fmt::print("{:<20} {:>12} {:>16}  {:<8} {}\n", check.at("name").get<std::string>(), found, limit,
+               check.at("unit").get<std::string>(), check.at("passed").get<bool>() ? "yes" : failed);
+  }
+}
+
 /// Prints nested keys as one name, "abs_error_mm.mean"; long lists of numbers are left to --json.
 void print_lines(const nlohmann::ordered_json& object, const std::string& prefix) {
   constexpr std::size_t kLongList = 6;
@@ -26,6 +40,8 @@ void print_lines(const nlohmann::ordered_json& object, const std::string& prefix
     const std::string name = prefix.empty() ? key : prefix + "." + key;
     if (key == "verdict" && value.is_object() && value.contains("reasons")) {
       print_verdict(value);
+    } else if (key == "checks" && value.is_array() && !value.empty() && value.front().contains("relation")) {
+      print_checks(value);
     } else if (value.is_object()) {
       print_lines(value, name);
     } else if (value.is_array() && !value.empty() && value.front().is_object()) {

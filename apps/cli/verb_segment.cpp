@@ -1,9 +1,11 @@
+#include "described_options.hpp"
 #include "options.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/steps/tissue_steps.hpp>
 
 #include <optional>
+#include <string_view>
 
 namespace incise::cli {
 
@@ -38,7 +40,15 @@ void add_segment(Application& application) {
           }
         }
         if (!arguments.seed.empty()) settings.seeds_mm.emplace_back(arguments.seed.data());
-        return run_step(options, [&](const auto& context) { return steps::segment_scan(request, context); });
+        try {
+          return run_step(options, [&](const auto& context) { return steps::segment_scan(request, context); });
+        } catch (const CaseError& error) {  // the reader of a CT names keys, such as ct.spacing_mm
+          constexpr std::string_view kGroup = "ct.";
+          Problem problem = error.problem();
+          if (!problem.path.starts_with(kGroup)) throw;
+          problem.path = option_name(problem.path.substr(kGroup.size()));
+          throw CaseError(request.ct.string(), problem);
+        }
       });
   verb->add_option("ct", a.ct, "DICOM folder, .nrrd/.nhdr, .nii[.gz], .mhd/.mha, folder of PNG slices")->required();
   verb->add_option("--window-hu", a.window, "Least and greatest HU of tissue")->expected(2);

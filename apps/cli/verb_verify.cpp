@@ -26,8 +26,7 @@ void require_a_check(const std::string& only) {
   const std::vector<std::string> names = physics_check_names();
   if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return name.starts_with(only); })) return;
   throw CaseError("command line", "--only", fmt::format("'{}'", only),
-                  fmt::format("the start of one of {}", fmt::join(names, ", ")),
-                  fmt::format("Did you mean '{}'?", nearest_name(only, names)));
+                  fmt::format("the start of one of {}", fmt::join(names, ", ")), did_you_mean(only, names));
 }
 
 void print_table(const std::vector<VerificationCheck>& checks) {

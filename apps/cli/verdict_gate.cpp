@@ -28,7 +28,7 @@ void require_accepted_ids(const std::vector<std::string>& accepted) {
     throw CaseError("command line", "--accept", fmt::format("'{}'", id),
                     is_refusal ? std::string("the id of a caution; nobody can accept a refusal")
                                : fmt::format("one of {}", fmt::join(cautions, ", ")),
-                    is_refusal ? std::string() : fmt::format("Did you mean '{}'?", nearest_name(id, cautions)));
+                    is_refusal ? std::string() : did_you_mean(id, cautions));
   }
 }
 

@@ -132,9 +132,9 @@ void JsonReader::end() {
   const Open& open = open_.back();
   for (auto item = open.json->begin(); is_strict_ && item != open.json->end(); ++item) {
     if (std::find(open.known.begin(), open.known.end(), item.key()) != open.known.end()) continue;
-    const std::string nearest = nearest_name(item.key(), open.known);
+    const std::string meant = did_you_mean(item.key(), open.known);
     refuse({}, fmt::format("unknown key '{}'", item.key()),
-           fmt::format("one of: {}. Did you mean '{}'?", fmt::join(open.known, ", "), nearest));
+           fmt::format("one of: {}{}{}", fmt::join(open.known, ", "), meant.empty() ? "" : ". ", meant));
   }
   open_.pop_back();
 }

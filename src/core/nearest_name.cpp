@@ -1,6 +1,9 @@
 #include <incise/core/nearest_name.hpp>
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 
 namespace incise {
 namespace {
@@ -22,13 +25,29 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+bool is_near(std::string_view word, std::string_view candidate, std::size_t edits) {
+  constexpr std::size_t kShortestPart = 3;  // fewer characters are part of too many names
+  if (word.size() >= kShortestPart && candidate.find(word) != std::string_view::npos) return true;
+  return edits <= std::max<std::size_t>(1, std::max(word.size(), candidate.size()) / 3);
+}
+
 }  // namespace
 
 std::string nearest_name(std::string_view word, const std::vector<std::string>& candidates) {
-  const auto best = std::min_element(candidates.begin(), candidates.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(word, a) < edit_distance(word, b);
-  });
-  return best == candidates.end() ? std::string() : *best;
+  std::string nearest;
+  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  for (const std::string& candidate : candidates) {
+    const std::size_t edits = edit_distance(word, candidate);
+    if (edits >= fewest || !is_near(word, candidate, edits)) continue;
+    fewest = edits;
+    nearest = candidate;
+  }
+  return nearest;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_name(word, candidates);
+  return nearest.empty() ? nearest : fmt::format("Did you mean '{}'?", nearest);
 }
 
 }  // namespace incise

@@ -85,16 +85,18 @@ void require_exists(const fs::path& path) {
   require_file_or_folder(path);
 }
 
+constexpr const char* kFormats =  // of a single file
+    ".nrrd, .nhdr, .nii, .nii.gz, .mhd or .mha";
+
 /// Returns the format of a single file. @throws DataError if its name has no format of a volume.
-VolumeFormat format_of_file(const fs::path& path) {
+VolumeFormat format_of_file(const fs::path& path, const char* expected) {
   const auto format = format_of_name(path);
   if (format && *format != VolumeFormat::PictureStack) return *format;
   if (format || looks_like_dicom(path)) {
     throw DataError(path, "", "a single slice", "the folder with all slices of the volume",
                     "Give the folder instead of the file.");
   }
-  throw DataError(path, "extension", fmt::format("'{}'", path.extension().string()),
-                  ".nrrd, .nhdr, .nii, .nii.gz, .mhd, .mha, or a folder of DICOM or PNG slices");
+  throw DataError(path, "extension", fmt::format("'{}'", path.extension().string()), expected);
 }
 
 ReadVolume read_ct_file(const fs::path& path, VolumeFormat format, Monitor& monitor) {
@@ -151,7 +153,10 @@ void require_compact_voxels(const fs::path& path, const Vec3& spacing_mm) {
 
 ReadVolume read_any_ct(const fs::path& path, const CtReadSettings& settings, Monitor& monitor) {
   require_exists(path);
-  const VolumeFormat format = fs::is_directory(path) ? format_of_folder(path) : format_of_file(path);
+  const VolumeFormat format =
+      fs::is_directory(path)
+          ? format_of_folder(path)
+          : format_of_file(path, ".nrrd, .nhdr, .nii, .nii.gz, .mhd, .mha, or a folder of DICOM or PNG slices");
   refuse_foreign_settings(path, format, settings);
   if (format == VolumeFormat::DicomSeries) return read_dicom_folder(path, settings, monitor);
   if (format == VolumeFormat::PictureStack) return read_picture_folder(path, settings, monitor);
@@ -168,9 +173,8 @@ ReadVolume read_ct(const fs::path& path, const CtReadSettings& settings, Monitor
 
 LabelVolume read_labels(const fs::path& path) {
   require_exists(path);
-  if (fs::is_directory(path))
-    throw DataError(path, "", "a folder", "a file of labels: .nrrd, .nhdr, .nii, .nii.gz, .mhd or .mha");
-  const RawImage image = read_itk_image(path, format_of_file(path));
+  if (fs::is_directory(path)) throw DataError(path, "", "a folder", fmt::format("a file of labels: {}", kFormats));
+  const RawImage image = read_itk_image(path, format_of_file(path, kFormats));
   LabelVolume labels;
   require_compact_voxels(path, image.grid.spacing_mm);
   labels.grid = image.grid;
@@ -180,7 +184,7 @@ LabelVolume read_labels(const fs::path& path) {
 
 GrayVolume read_gray(const fs::path& path) {
   require_exists(path);
-  const RawImage image = read_itk_image(path, format_of_file(path));
+  const RawImage image = read_itk_image(path, format_of_file(path, kFormats));
   if (image.component != Component::F32) throw DataError(path, "voxels", "another type", "32-bit floats");
   GrayVolume volume;
   volume.grid = image.grid;

@@ -120,10 +120,11 @@ void read_parameters(const Json& document, const char* schema, std::vector<std::
   for (const auto& spec : parameters) names.emplace_back(spec.name);
   for (const auto& [key, value] : document.items()) {
     const auto found = std::find(names.begin(), names.end(), key);
-    if (found == names.end())
-      throw DataError(
-          file, key, "an unknown key", "a parameter of a specimen",
-          fmt::format("Did you mean '{}'? `incise schema {}` lists all.", nearest_name(key, names), schema));
+    if (found == names.end()) {
+      const std::string meant = did_you_mean(key, names);
+      throw DataError(file, key, "an unknown key", "a parameter of a specimen",
+                      fmt::format("{}{}`incise schema {}` lists all.", meant, meant.empty() ? "" : " ", schema));
+    }
     const auto place = static_cast<std::size_t>(found - names.begin());
     if (place < known) continue;
     const auto& spec = parameters[place - known];

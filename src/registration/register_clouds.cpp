@@ -360,8 +360,8 @@ class Registering {
     if (settings_.settling_mm > 0.0 || !is_suspected) return;
     result.reasons.push_back(
         fmt::format("apart from the pose, the surfaces differ smoothly by {:.2g} mm (rms), up to {:.2g} mm, as if the "
-                    "tissue had settled or were held differently; the pose may be off by as much. With settling_mm, "
-                    "pose and settling are found together",
+                    "tissue had settled or were held differently; the pose may be off by as much. Run "
+                    "`incise register` again with `--settling-mm 1` to find pose and settling together",
                     frame_.length * shape.apart_rms, frame_.length * shape.apart_largest));
   }
 

@@ -59,7 +59,7 @@ void require_known(const Json& document, const std::vector<std::string>& keys, c
   for (const auto& [key, value] : document.items()) {
     if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
     throw DataError(file, at + "/" + key, "an unknown key", fmt::format("one of {}", fmt::join(keys, ", ")),
-                    fmt::format("Did you mean '{}'?", nearest_name(key, keys)));
+                    did_you_mean(key, keys));
   }
 }
 

@@ -77,7 +77,7 @@ void require_override_names(const std::vector<std::string>& names) {
     throw CaseError("command line", "--override", fmt::format("'{}'", name),
                     is_check ? std::string("a check that can be overridden; this one cannot")
                              : fmt::format("one of {}", fmt::join(possible, ", ")),
-                    is_check ? "" : fmt::format("Did you mean '{}'?", nearest_name(name, possible)));
+                    is_check ? "" : did_you_mean(name, possible));
   }
 }
 

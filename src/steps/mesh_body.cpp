@@ -17,6 +17,16 @@ bool is_surface(const std::filesystem::path& path) {
   return ending == ".stl" || ending == ".ply" || ending == ".obj" || ending == ".vtp";
 }
 
+void require_known_format(const std::filesystem::path& input) {
+  if (is_surface(input) || !std::filesystem::is_regular_file(input)) return;
+  try {
+    require_volume_name(input);
+  } catch (const DataError&) {
+    throw DataError(input, "extension", fmt::format("'{}'", input.extension().string()),
+                    "labels (.nrrd, .nhdr, .nii, .nii.gz, .mhd, .mha) or a closed surface (.stl, .ply, .obj, .vtp)");
+  }
+}
+
 void require_order(double fine_mm, double coarse_mm) {
   if (fine_mm <= coarse_mm) return;
   throw CaseError("command line", "--fine-mm", fmt::format("{:.3g} mm", fine_mm),
@@ -56,6 +66,7 @@ MeshingResult meshed(const MeshRequest& request, const PlannedCut& cut, const Me
 
 StepResult mesh_body(const MeshRequest& request, const StepContext& context) {
   require_own_manifest_beside(request.output);
+  require_known_format(request.input);
   MeshingSettings settings;
   if (request.tets > 0) settings.target_tets = request.tets;
   if (request.fine_mm && request.coarse_mm) require_order(*request.fine_mm, *request.coarse_mm);

@@ -80,7 +80,7 @@ void YamlReader::refuse_unknown_keys(const Level& level) const {
     if (std::find(level.known.begin(), level.known.end(), key) != level.known.end()) continue;
     const std::string path = level.name.empty() ? key : fmt::format("{}.{}", level.name, key);
     refuse(entry.first, path, "an unknown key", fmt::format("one of {}", fmt::join(level.known, ", ")),
-           fmt::format("Did you mean '{}'?", nearest_name(key, level.known)));
+           did_you_mean(key, level.known));
   }
 }
 
@@ -213,8 +213,7 @@ void YamlReader::choice(const Field& field, std::size_t& value, Names names) {
                                   [&](std::string_view name) { return node.IsScalar() && node.Scalar() == name; });
   if (found == names.end()) {
     const std::vector<std::string> valid(names.begin(), names.end());
-    const std::string hint =
-        node.IsScalar() ? fmt::format("Did you mean '{}'?", nearest_name(node.Scalar(), valid)) : std::string();
+    const std::string hint = node.IsScalar() ? did_you_mean(node.Scalar(), valid) : std::string();
     refuse(node, path_of(field.name), shown(node), fmt::format("one of {}", fmt::join(valid, ", ")), hint);
   }
   value = static_cast<std::size_t>(found - names.begin());

@@ -159,8 +159,9 @@ class CalibrationRunner {
     }
     const std::size_t asked = subjects_.size() * knots.size();
     calibration_.simulations += asked;
-    monitor_.message(Severity::Notice, fmt::format("calibration: {} simulations, {} of them finished already", asked,
-                                                   asked - missing.size()));
+    const char* simulations = asked == 1 ? "simulation" : "simulations";
+    monitor_.message(Severity::Notice, fmt::format("calibration: {} {}, {} of them finished already", asked,
+                                                   simulations, asked - missing.size()));
     std::vector<IncisionTask> tasks;
     std::vector<Missing> simulated;
     std::vector<const HeldBody*> held;
@@ -190,7 +191,8 @@ class CalibrationRunner {
     });
     if (done < tasks.size()) {
       throw Cancelled(
-          fmt::format("the calibration was interrupted with {} of {} simulations to go", tasks.size() - done, asked));
+          fmt::format("the calibration was interrupted with {} of {} {} to go", tasks.size() - done, asked,
+                      simulations));
     }
   }
 

@@ -9,6 +9,7 @@ import unittest
 
 import small_case
 import small_dicom
+import small_photo
 from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, HandMadePaths, files_below
 
 
@@ -79,6 +80,18 @@ class CtTest(CommandTest):
         done = self.incise("mesh", "labels.nrrd", "-o", "out.vtu")
         self.assert_refused(done, BAD_DATA, "labels.nrrd: mesh sizing: a body of 4.31e+03 mm3 is too small for edges of 4 mm")
         self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+
+    def test_mesh_names_the_formats_that_it_reads(self):
+        small_case.write_contour(self.folder / "tumor.csv", small_case.ring())
+        done = self.incise("mesh", "tumor.csv", "-o", "out.vtu")
+        self.assert_refused(done, BAD_DATA, "tumor.csv: extension: found '.csv', expected labels (.nrrd,", "a closed surface (.stl, .ply, .obj, .vtp)")
+
+    def test_segment_names_the_options_that_pictures_need(self):
+        (self.folder / "ct").mkdir()
+        for name in ("slice_1.png", "slice_2.png"):
+            small_photo.write_png(self.folder / "ct" / name, 4, 4, 1, 8, [bytes(4)] * 4)
+        for options, says in (((), "ct: --spacing-mm: found nothing"), (("--spacing-mm", 1, 1, 1), "ct: --hu: found nothing")):
+            self.assert_refused(self.incise("segment", "ct", *options, "-o", "out.nrrd"), BAD_CASE, says)
 
     def test_a_truncated_nrrd_is_told(self):
         (self.folder / "ct.nrrd").write_bytes(
@@ -526,6 +539,13 @@ class ExportTest(HandMadePaths, CommandTest):
         self.assertTrue(all(check["passed"] for check in result["checks"]))
         self.assertIn("def ", (self.folder / "out.script").read_text())
 
+    def test_the_checks_of_a_program_are_shown_as_a_table(self):
+        self.write_path()
+        said = self.export().stdout
+        self.assertRegex(said, r"(?m)^check +found +limit +unit +passed$")
+        self.assertRegex(said, r"(?m)^finite +yes +yes +yes$")
+        self.assertRegex(said, r"(?m)^speed_max +\S+ +<= 30 +mm/s +yes$")
+
     def test_a_path_in_another_frame_is_refused(self):
         for frame in ("sim_rest", "sim_stretched"):
             with self.subTest(frame=frame):
@@ -708,9 +728,10 @@ class CommandLineTest(CommandTest):
             ("run case --frames", "--frames: found no value, expected 1 value"),
             ("simulate case --checkpoint-s -1", "--checkpoint-s: found -1, expected a number from 0 to 86400"),
             ("export p.json --tcp 1 2", "--tcp: found 2 values, expected 6 values"),
-            ("run", "case: found nothing, expected "),
+            ("run", "case: found nothing, expected case file, or a folder with case.yaml"),
             ("run case other", "incise run: found 'other', expected no further argument"),
             ("run case --frame 3", "incise run: found '--frame', expected one of its options. Did you mean '--frames'?"),
+            ("run case --bogus", "incise run: found '--bogus', expected one of its options. See `incise run --help`"),
             ("bench cat", "incise bench: found 'cat', expected one of make, cut"),
         ):
             with self.subTest(words=words):

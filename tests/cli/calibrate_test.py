@@ -58,6 +58,9 @@ class CalibrateTest(CommandTest):
         again = self.calibrate(*FEW)
         self.assertEqual(again.returncode, DONE, again.stderr)
         self.assertIn("4 simulations, 4 of them finished already", again.stderr)
+        self.assertIn("x stiffness", again.stdout)  # one run is with the second stiffness
+        self.assertIn("the table's scores are of mid-lines", again.stdout)
+        self.assertRegex(again.stdout, r"chosen: .* % of the baseline by the inner edges of 1 of 1 specimen\n")
         self.assertEqual((self.out / "calibration.json").read_bytes(), before)
 
         # A run that was damaged is told and made anew, to the same bits.

@@ -12,7 +12,7 @@ GROUPS = ["Start here:", "Plan and cut:", "Robot:", "Measure:", "Virtual experim
 class HelpTest(CommandTest):
     def verbs(self):
         """All that it knows, as it names them to whoever asks for another."""
-        return re.search(r"expected one of (.*)\. Did", self.incise("nonsense").stderr)[1].split(", ")
+        return re.search(r"expected one of (.*)\. Did", self.incise("rnu").stderr)[1].split(", ")
 
     def test_every_verb_is_listed_in_a_group_in_one_line_that_fits_100_columns(self):
         done = self.incise("--help")
@@ -47,6 +47,13 @@ class HelpTest(CommandTest):
             self.assertEqual(done.stdout, self.incise(*words, "--help").stdout)
             self.assertIn("Example:", done.stdout)
         self.assert_refused(self.incise("help", "rnu"), BAD_CASE, "'rnu'", "Did you mean 'run'?")
+        self.assertNotIn("Did you mean", self.incise("help", "foo").stderr)
+
+    def test_the_help_says_what_happens_without_an_output(self):
+        for words, says in ((["mesh"], " (required)"), (["bench", "make"], " (required)"), (["plan"], "; by default `out` in the case's folder"),
+                            (["audit"], "; by default nothing is written")):
+            said = re.sub(r"\s+", " ", self.incise(*words, "--help").stdout)
+            self.assertIn("File or folder to write" + says, said)
 
     def test_the_version_is_one_line(self):
         done = self.incise("--version")
@@ -57,6 +64,7 @@ class HelpTest(CommandTest):
         schema = json.loads(self.incise("schema", "case").stdout)
         self.assertEqual(schema["title"], "incise.case/1")
         self.assertRegex(self.incise("schema", "case", "--defaults").stdout, re.compile(r"^schema: incise\.case/1\b"))
+        self.assertNotRegex(self.incise("schema", "case", "--defaults").stdout, r"-0\b(?!\.)")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,5 @@
 #include "io/io_test_support.hpp"
 
-#include <incise/core/nearest_name.hpp>
 #include <incise/io/json_file.hpp>
 
 #include <nlohmann/json.hpp>
@@ -45,13 +44,6 @@ TEST(ParseJson, RefusesAKeyGivenTwice) {
 
 TEST(ParseJson, RefusesANumberThatNoDoubleHolds) {
   EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("[1e999]", "x.json")); }), HasSubstr("x.json"));
-}
-
-TEST(NearestName, FindsWhatWasMeant) {
-  const std::vector<std::string> names{"waypoints", "frame", "kind", "closed"};
-  EXPECT_EQ(nearest_name("waypionts", names), "waypoints");
-  EXPECT_EQ(nearest_name("Frame", names), "frame");
-  EXPECT_EQ(nearest_name("x", {}), "");
 }
 
 }  // namespace
