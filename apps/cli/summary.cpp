@@ -89,9 +89,10 @@ void print_hidden_edges(const nlohmann::ordered_json& result) {
     if (seen != "-" && seen != "success") cuts += (cuts.empty() ? "" : " and ") + std::string(name);
   }
   if (cuts.empty()) return;
-  fmt::print("No inner edge is seen from above {}: strips of skin still bridge the kerf. Look at the report, and try a "
-             "finer mesh. Margins are those of the mid-line and of the kerf below.\n",
-             cuts);
+  fmt::print(
+      "No inner edge is seen from above {}: strips of skin still bridge the kerf. Look at the report, and try a "
+      "finer mesh. Margins are those of the mid-line and of the kerf below.\n",
+      cuts);
 }
 
 /// Prints how the error fell from pass to pass, against the mesh-resolution limit.

@@ -80,8 +80,7 @@ void add_calibrate(Application& application) {
   verb->add_option("--registration", a.request.registrations,
                    "Files of `incise register`, one for each case; the calibration keeps them, and `incise assess` "
                    "compares further specimens with them");
-  add_options_of(*verb, a.request.request, "speeds_mm_s", "dullnesses", "drag_lengths_mm",
-                 "second_drag_lengths_mm");
+  add_options_of(*verb, a.request.request, "speeds_mm_s", "dullnesses", "drag_lengths_mm", "second_drag_lengths_mm");
 }
 
 }  // namespace incise::cli

@@ -67,8 +67,7 @@ void add_forecast(Application& application) {
           "case", a.case_path,
           "Case file, or a folder with case.yaml; its Young's modulus must be the one derived from the measured pull")
       ->required();
-  verb->add_option("--calibration", a.calibration, "calibration.json of `incise calibrate --method fit`")
-      ->required();
+  verb->add_option("--calibration", a.calibration, "calibration.json of `incise calibrate --method fit`")->required();
 }
 
 }  // namespace incise::cli

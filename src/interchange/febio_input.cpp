@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-
 namespace incise {
 namespace {
 
@@ -207,14 +206,14 @@ class FebioInput {
     std::vector<std::int32_t> vertices;
     for (const VertexLoad& load : loads) vertices.push_back(load.vertex.value);
     add_node_set(name, numbers_from_1(vertices));
-    pugi::xml_node data = with(data_.append_child("NodeData"),
-                               {{"name", name + "_mn"}, {"node_set", name}, {"data_type", "vec3"}});
+    pugi::xml_node data =
+        with(data_.append_child("NodeData"), {{"name", name + "_mn"}, {"node_set", name}, {"data_type", "vec3"}});
     for (std::size_t i = 0; i < loads.size(); ++i) {
       add_text(data, "node", text_of(loads[i].force_mn, ",")).append_attribute("lid") =
           static_cast<unsigned long long>(i + 1);
     }
-    pugi::xml_node node = with(loads_.append_child("nodal_load"),
-                               {{"name", name}, {"type", "nodal_force"}, {"node_set", name}});
+    pugi::xml_node node =
+        with(loads_.append_child("nodal_load"), {{"name", name}, {"type", "nodal_force"}, {"node_set", name}});
     with(add_text(node, "value", name + "_mn"), {{"lc", "1"}, {"type", "map"}});
   }
 
@@ -278,15 +277,13 @@ class FebioInput {
     pugi::xml_node domain = with(domains_.append_child("ShellDomain"), {{"name", name}, {"mat", name}});
     add_text(domain, "shell_thickness", "0.001");
     add_text(add_material(name, "rigid body", 1e-6), "center_of_mass", "0,0,0");
-    pugi::xml_node fixed =
-        with(rigid_.append_child("rigid_bc"), {{"name", name + "_fixed"}, {"type", "rigid_fixed"}});
+    pugi::xml_node fixed = with(rigid_.append_child("rigid_bc"), {{"name", name + "_fixed"}, {"type", "rigid_fixed"}});
     add_text(fixed, "rb", name);
     for (const char* dof : {"Rx_dof", "Ry_dof", "Rz_dof", "Ru_dof", "Rv_dof", "Rw_dof"}) add_text(fixed, dof, "1");
     add_comment(contact_,
                 "Frictionless and unilateral. FEBio chooses the penalty and refines it (augmented Lagrangian).");
-    pugi::xml_node contact =
-        with(contact_.append_child("contact"),
-             {{"name", name}, {"type", "sliding-elastic"}, {"surface_pair", name + "_pair"}});
+    pugi::xml_node contact = with(contact_.append_child("contact"),
+                                  {{"name", name}, {"type", "sliding-elastic"}, {"surface_pair", name + "_pair"}});
     add_text(contact, "laugon", "AUGLAG");
     add_text(contact, "tolerance", "0.05");
     add_text(contact, "gaptol", "0.05");

@@ -27,9 +27,9 @@ class SofaScene {
     require_known_law(model_, "sofa");
     pugi::xml_document document;
     add_comments(document);
-    pugi::xml_node root = with(
-        document.append_child("Node"),
-        {{"name", "root"}, {"dt", fmt::format("{}", kStepS)}, {"gravity", text_of(specimen_.gravity_mm_s2)}});
+    pugi::xml_node root =
+        with(document.append_child("Node"),
+             {{"name", "root"}, {"dt", fmt::format("{}", kStepS)}, {"gravity", text_of(specimen_.gravity_mm_s2)}});
     root.append_child("DefaultAnimationLoop");
     pugi::xml_node tissue = with(root.append_child("Node"), {{"name", "tissue"}});
     add_solver(tissue);

@@ -75,8 +75,7 @@ void require_known_law(const TissueModel& model, const char* format) {
                   "Neither format has a law with fibres like these");
 }
 
-pugi::xml_node with(pugi::xml_node node,
-                    std::initializer_list<std::pair<const char*, std::string>> attributes) {
+pugi::xml_node with(pugi::xml_node node, std::initializer_list<std::pair<const char*, std::string>> attributes) {
   for (const auto& [name, text] : attributes) node.append_attribute(name) = text.c_str();
   return node;
 }

@@ -40,8 +40,7 @@ struct Stiffness {
 void require_known_law(const TissueModel& model, const char* format);
 
 /// Gives a node attributes, in this order. @returns the node.
-pugi::xml_node with(pugi::xml_node node,
-                    std::initializer_list<std::pair<const char*, std::string>> attributes);
+pugi::xml_node with(pugi::xml_node node, std::initializer_list<std::pair<const char*, std::string>> attributes);
 void add_comment(pugi::xml_node parent, const std::string& text);
 /// Appends an element that contains a text.
 pugi::xml_node add_text(pugi::xml_node parent, const char* name, const std::string& text);

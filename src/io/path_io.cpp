@@ -149,8 +149,9 @@ Verdict read_path_verdict(const std::filesystem::path& file) {
   const ordered_json document = read_json(file);
   const ToolPath path = path_in(document, file);
   if (!document.contains(kVerdict))
-    return refusals_of({}, "the path's file holds no verdict, as after `incise compensate --no-verify`: no simulated "
-                           "cut along it is known");
+    return refusals_of({},
+                       "the path's file holds no verdict, as after `incise compensate --no-verify`: no simulated "
+                       "cut along it is known");
   Verdict verdict;
   std::string digest;
   JsonReader reader(document.at(kVerdict), file, "/verdict");

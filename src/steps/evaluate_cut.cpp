@@ -254,12 +254,12 @@ Measured from_files(const EvaluateRequest& request) {
   add_contours(result.json, result.evaluation, tumor_edge, settings.approach);
   const double height_mm = mean_height_mm(incision, tumor_edge, settings.approach);
   if (std::abs(height_mm) > kDoubtfulHeightMm) {
-    result.warnings.push_back(
-        fmt::format("the incision lies {:.1f} mm {} the tumour's edge on average, seen along {} {} {}, and distances are "
-                    "measured in space. Do both belong to the same tissue: stretched, or after the cut? The edge of "
-                    "a run's mid-line is plan/tumor_edge.csv, that of its inner edge tumor_edge_final.csv",
-                    std::abs(height_mm), height_mm < 0.0 ? "below" : "above", settings.approach.x() + 0.0,
-                    settings.approach.y() + 0.0, settings.approach.z() + 0.0));
+    result.warnings.push_back(fmt::format(
+        "the incision lies {:.1f} mm {} the tumour's edge on average, seen along {} {} {}, and distances are "
+        "measured in space. Do both belong to the same tissue: stretched, or after the cut? The edge of "
+        "a run's mid-line is plan/tumor_edge.csv, that of its inner edge tumor_edge_final.csv",
+        std::abs(height_mm), height_mm < 0.0 ? "below" : "above", settings.approach.x() + 0.0,
+        settings.approach.y() + 0.0, settings.approach.z() + 0.0));
   }
   result.json["warnings"] = result.warnings;
   if (!request.figure.empty()) {

@@ -254,7 +254,7 @@ void SettingLister::choice(const Field& field, std::size_t& value, Names names) 
 
 void SettingLister::block(const Field& field, const Block& block) {
   std::vector<double> numbers = numbers_of(block);
-  for (double& number : numbers) number += 0.0;  // -0 becomes 0
+  for (double& number : numbers) number += 0.0;                        // -0 becomes 0
   const bool is_of_list = field.name.empty() && list_.ends_with('[');  // whose brackets stand already
   if (block.columns == 1 && is_of_list) {
     for (const double number : numbers) add(field, fmt::format("{}", number));

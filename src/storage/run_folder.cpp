@@ -257,9 +257,9 @@ void RunFolder::remove_what_is_out_of_date(Stage until, Monitor& monitor) {
   const std::filesystem::path program = root_ / "program";
   if (!is_own_manifest(program / "manifest.json") || is_made_as_now(program)) return;
   remove_replaceable(program);
-  monitor.message(Severity::Warning,
-                  fmt::format("{}: removed, because the settings, the inputs or their places, or the version have changed since it was made",
-                              program.string()));
+  monitor.message(Severity::Warning, fmt::format("{}: removed, because the settings, the inputs or their places, or "
+                                                 "the version have changed since it was made",
+                                                 program.string()));
 }
 
 void RunFolder::remove_program_made_without(const Verdict& advice, Monitor& monitor) {

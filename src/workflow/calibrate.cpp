@@ -190,9 +190,8 @@ class CalibrationRunner {
       ++done;
     });
     if (done < tasks.size()) {
-      throw Cancelled(
-          fmt::format("the calibration was interrupted with {} of {} {} to go", tasks.size() - done, asked,
-                      simulations));
+      throw Cancelled(fmt::format("the calibration was interrupted with {} of {} {} to go", tasks.size() - done, asked,
+                                  simulations));
     }
   }
 

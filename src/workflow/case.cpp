@@ -168,8 +168,7 @@ std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& 
   std::vector<double> toughness;
   if (variation.from_mesh) {
     const char* field = "cut.toughness_from_mesh";
-    toughness =
-        numbers_of(mesh, kToughnessArray, field, "A mesh that is made from a CT has none: give specimen.mesh");
+    toughness = numbers_of(mesh, kToughnessArray, field, "A mesh that is made from a CT has none: give specimen.mesh");
     const auto bad = std::find_if_not(toughness.begin(), toughness.end(), [](double t) { return std::isfinite(t) && t > 0.0; });
     if (bad != toughness.end()) {
       throw CaseError(kWhere, field, fmt::format("toughness of {} at tet {}", *bad, bad - toughness.begin()), "a finite number above 0");

@@ -188,7 +188,8 @@ TEST(AtomicFolder, DoesNotReplaceACaseThatWasEdited) {
   make("seed 2");
   EXPECT_EQ(read_text(folder / "specimen" / "case.yaml"), "seed 2");
   std::ofstream(folder / "specimen" / "case.yaml") << "mine";
-  EXPECT_THAT([&] { make("seed 3"); }, ThrowsMessage<DataError>(HasSubstr("'case.yaml', changed since it was written")));
+  EXPECT_THAT([&] { make("seed 3"); },
+              ThrowsMessage<DataError>(HasSubstr("'case.yaml', changed since it was written")));
   EXPECT_EQ(read_text(folder / "specimen" / "case.yaml"), "mine");
 }
 
