@@ -239,6 +239,27 @@ std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>&
   return category_plot_svg(plot);
 }
 
+/// Of a series with fewer photographs than another one's point of the learning curve, the first so many are all.
+void take_all_where_fewer(std::vector<PooledSeries>& all) {
+  std::set<std::size_t> points;
+  for (const PooledSeries& series : all) {
+    for (const TestedSpecimen& specimen : series.tested)
+      for (const laboratory::LearningPathCut& learning : specimen.learning) points.insert(learning.photographs);
+  }
+  for (PooledSeries& series : all) {
+    for (TestedSpecimen& specimen : series.tested) {
+      if (specimen.learning.empty()) continue;  // of a series without a curve
+      std::size_t most = std::max<std::size_t>(series.photographs, 1) - 1;
+      for (const laboratory::LearningPathCut& learning : specimen.learning) most = std::max(most, learning.photographs);
+      for (auto point = points.upper_bound(most); point != points.end(); ++point) {
+        for (const laboratory::RivalPath path : {laboratory::RivalPath::Photographs, laboratory::RivalPath::Learned})
+          if (const laboratory::PathCut* cut = specimen.find(to_string(path)))
+            specimen.learning.push_back({*point, *cut});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments, const std::filesystem::path& output,
@@ -250,6 +271,7 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   for (const std::filesystem::path& folder : experiments) all.push_back(read_series(folder));
   require_apart(all);
   require_same_paths(all);
+  take_all_where_fewer(all);
   std::vector<TestedSeries> tested, unlike, like;
   std::vector<AdvisedSpecimen> advised;
   const bool is_by_series = static_cast<std::ptrdiff_t>(all.size()) >= laboratory::kFewestSeries;

@@ -149,6 +149,25 @@ TEST_F(Pooling, ShowsWhatPhotographsAreWorth) {
   EXPECT_NEAR(curve.at(2).at("pair").at("difference_mm"), 0.1, 1e-12);
 }
 
+TEST_F(Pooling, OfASeriesWithFewerPhotographsTakesAll) {
+  const auto with_eight = [](PooledJson& study) {
+    for (int i = 0; i < 9; ++i) study["table_2"].push_back({{"role", "calibrate"}, {"mean_abs_error_mm", 1.4}});
+    for (PooledJson& specimen : study["tested_specimens"]) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        PooledJson part = specimen["learning"][k];
+        part["photographs"] = 8;
+        specimen["learning"].push_back(part);
+      }
+    }
+  };
+  const PooledJson found = pool({series(100, 0.4, 0.1, with_eight), series(200, 0.8)});
+  const PooledJson& curve = found.at("learning");
+  ASSERT_EQ(curve.size(), 4);
+  EXPECT_EQ(curve.at(2).at("photographs"), 8);
+  EXPECT_EQ(curve.at(2).at("pair").at("compared"), 4);
+  EXPECT_NEAR(curve.at(2).at("pair").at("difference_mm"), 0.05, 1e-12) << "0 with eight, 0.1 with all of one";
+}
+
 TEST_F(Pooling, ScoresTheAdviceOverAllSeries) {
   const PooledJson found = pool({series(100, 0.4, 0.1), series(200, 1.8, 0.6)});
   const PooledJson& advice = found.at("advice");
