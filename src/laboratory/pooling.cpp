@@ -239,6 +239,11 @@ std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>&
   return category_plot_svg(plot);
 }
 
+/// Whether the series has a learning curve.
+bool has_curve(const PooledSeries& series) {
+  return std::ranges::any_of(series.tested, [](const TestedSpecimen& specimen) { return !specimen.learning.empty(); });
+}
+
 /// Of a series with fewer photographs than another one's point of the learning curve, the first so many are all.
 void take_all_where_fewer(std::vector<PooledSeries>& all) {
   std::set<std::size_t> points;
@@ -315,10 +320,14 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   });
   if (is_drawn) write_atomically(folder.path() / "paths.svg", paths_svg(parts, all.size()));
   if (!curve.empty()) {
-    double photographs = 0.0;
-    for (const PooledSeries& series : all) photographs += static_cast<double>(series.photographs);
+    double photographs = 0.0, curves = 0.0;
+    for (const PooledSeries& series : all) {
+      if (!has_curve(series)) continue;
+      photographs += static_cast<double>(series.photographs);
+      curves += 1.0;
+    }
     write_atomically(folder.path() / "learning.svg",
-                     line_plot_svg(laboratory::learning_plot(curve, photographs / static_cast<double>(all.size()))));
+                     line_plot_svg(laboratory::learning_plot(curve, photographs / curves)));
   }
   if (advice.is_object()) laboratory::draw_advice(folder.path(), advice);
   std::vector<std::filesystem::path> inputs;
