@@ -238,7 +238,7 @@ class VerdictTest(CommandTest):
         self.write(small_case.merged(small_case.SOUND, {"plan": {"close_margin_mm": 2.2}}))
         done = self.incise("simulate", "case", "-o", self.out)
         self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
-        self.assertIn("program: removed, because the settings, inputs or version have changed", done.stderr)
+        self.assertIn("program: removed, because the settings, the inputs or their places, or the version have changed", done.stderr)
         self.assert_no_program()
         self.assertFalse((self.out / "correction").exists(), "it was judged by another margin")
 
