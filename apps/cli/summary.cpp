@@ -86,7 +86,8 @@ void print_hidden_edges(const nlohmann::ordered_json& result) {
   for (const auto& [part, name] : {std::pair{"before", "as planned"}, std::pair{"after", "corrected"}}) {
     if (shown_at(result, part, "/closed_loop") != "yes") continue;
     const std::string seen = shown_at(result, part, "/inner_edge/outcome");
-    if (seen != "-" && seen != "success") cuts += (cuts.empty() ? "" : " and ") + std::string(name);
+    const bool is_measured = shown_at(result, part, "/inner_edge/abs_error_mm/mean") != "-";
+    if (seen != "-" && !is_measured) cuts += (cuts.empty() ? "" : " and ") + std::string(name);
   }
   if (cuts.empty()) return;
   fmt::print(

@@ -221,8 +221,13 @@ std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>&
                                          series),
                     .categories = {},
                     .panels = {}};
-  for (const PathResult& path : parts.front().second.paths)
-    if (path.difference_mm && path.name != laboratory::kAsPlannedPath) plot.categories.push_back(path.name);
+  for (const PathResult& path : parts.front().second.paths) {
+    const bool is_compared = std::ranges::any_of(parts, [&](const auto& part) {
+      const PathResult* found = part.second.find(path.name);
+      return found != nullptr && found->difference_mm.has_value();
+    });
+    if (is_compared && path.name != laboratory::kAsPlannedPath) plot.categories.push_back(path.name);
+  }
   for (const auto& [of, paths] : parts) {
     if (!paths.best_without_simulation) continue;
     CategorySeries shown{.name = "", .values = {}, .low = {}, .high = {}};
@@ -233,8 +238,12 @@ std::string paths_svg(const std::vector<std::pair<std::string, PathComparison>>&
       shown.low.push_back(path != nullptr && path->confidence ? path->confidence->low : middle);
       shown.high.push_back(path != nullptr && path->confidence ? path->confidence->high : middle);
     }
-    plot.panels.push_back(
-        {fmt::format("{}: difference from {}, mm (95 %)", of, *paths.best_without_simulation), {shown}});
+    const bool has_intervals =
+        std::ranges::any_of(paths.paths, [](const PathResult& path) { return path.confidence.has_value(); });
+    if (!has_intervals) shown.low = shown.high = {};  // too few series
+    plot.panels.push_back({fmt::format("{}: difference from {}, mm{}", of, *paths.best_without_simulation,
+                                       has_intervals ? " (95 %)" : ""),
+                           {shown}});
   }
   return category_plot_svg(plot);
 }

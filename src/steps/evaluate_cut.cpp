@@ -261,7 +261,6 @@ Measured from_files(const EvaluateRequest& request) {
         std::abs(height_mm), height_mm < 0.0 ? "below" : "above", settings.approach.x() + 0.0,
         settings.approach.y() + 0.0, settings.approach.z() + 0.0));
   }
-  result.json["warnings"] = result.warnings;
   if (!request.figure.empty()) {
     const std::string name = request.incision.stem().string();
     write_figure(request.figure, evaluation_figure_svg(result.evaluation, tumor_edge, settings, name, request.colors));
@@ -330,6 +329,7 @@ EvaluatedCut evaluate_in_pixels(const EvaluateRequest& asked, const StepContext&
   const std::vector<std::filesystem::path> inputs{request.photo, request.incision, request.tumor, request.line};
   const std::string specimen_id = specimen_of(request, inputs);
   Measured found = request.photo.empty() ? from_files(request) : from_photo(request);
+  if (!found.json.contains("warnings")) found.json["warnings"] = found.warnings;  // a photograph's precede its verdict
   if (!specimen_id.empty()) found.json["specimen_id"] = specimen_id;
   if (!request.output.empty()) write_json(request.output, found.json);
   for (const std::string& warning : found.warnings) context.monitor.message(Severity::Warning, warning);

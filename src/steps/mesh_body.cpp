@@ -9,16 +9,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
+
 namespace incise::steps {
 namespace {
 
 bool is_surface(const std::filesystem::path& path) {
-  const std::string ending = path.extension().string();
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending == ".stl" || ending == ".ply" || ending == ".obj" || ending == ".vtp";
 }
 
+/// The reader of labels judges what it knows, such as a slice; of other files it would not say that surfaces will do.
 void require_known_format(const std::filesystem::path& input) {
-  if (is_surface(input) || !std::filesystem::is_regular_file(input)) return;
+  const std::filesystem::path ending = input.extension();
+  if (is_surface(input) || !std::filesystem::is_regular_file(input) || ending.empty() || ending == ".dcm") return;
   try {
     require_volume_name(input);
   } catch (const DataError&) {

@@ -416,7 +416,7 @@ void add_evaluation(const fs::path& root, ReportData& data) {
       {"… closest", "mm", "/signed_error_mm/min"},
       {"… farthest", "mm", "/signed_error_mm/max"},
       {"The paper's figure: mid-line against 4.5 mm, mean", "mm", "/paper_abs_error_mm"},
-      {"Absolute error of the inner edge against 4.5 mm, mean (none: strips of skin still bridge the kerf)", "mm",
+      {"Absolute error of the inner edge against 4.5 mm, mean (none: no closed edge is seen from above)", "mm",
        "/inner_edge/abs_error_mm/mean"},
       {"Signed error of the inner edge, mean", "mm", "/inner_edge/signed_error_mm/mean"},
       {"Hu shape score (0: same shape as the tumour edge)", "", "/hu_score"},
