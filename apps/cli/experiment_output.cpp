@@ -7,21 +7,6 @@
 namespace incise::cli {
 namespace {
 
-/// Returns why a step ended, which is stored as `STEP: not acceptable "OUTCOME" ["REASON", ...]`, with its outcome and
-/// its first reason in words; any other text unchanged.
-std::string in_words(const std::string& ended_at) {
-  const std::size_t begin = ended_at.find('"');
-  if (begin == std::string::npos) return ended_at;
-  const std::size_t end = ended_at.find_last_of("\"]") + 1;
-  std::string values = ended_at.substr(begin, end - begin);
-  if (const std::size_t between = values.find("\" ["); between != std::string::npos) values.insert(between + 1, ",");
-  const auto json = nlohmann::json::parse("[" + values + "]", nullptr, false);
-  if (!json.is_array() || !json[0].is_string()) return ended_at;
-  std::string words = json[0].get<std::string>();
-  if (json.size() > 1 && !json[1].empty()) words += ": " + json[1][0].get<std::string>();
-  return ended_at.substr(0, begin) + words + ended_at.substr(end);
-}
-
 void print_area(const char* name, const nlohmann::ordered_json& area) {
   if (!area.is_object()) return;
   fmt::print("{:<34} {:.2f} ({:.2f} to {:.2f}); {} of {} were worse\n", name, area.at("area").get<double>(),
@@ -123,12 +108,12 @@ void print_experiment(const nlohmann::ordered_json& result) {
   print_advice(result.at("advice"));
   for (const auto& one : result.at("left_out_of_calibration")) {
     fmt::print("{} (calibrate): left out of the fit: {}\n", one.at("name").get<std::string>(),
-               in_words(one.at("reason").get<std::string>()));
+               one.at("reason").get<std::string>());
   }
   for (const auto& row : result.at("table_2")) {
     if (row.at("ended_at").is_null()) continue;
     fmt::print("{} ({}), {}: ended at {}\n", row.at("specimen").get<std::string>(), row.at("role").get<std::string>(),
-               row.at("cut").get<std::string>(), in_words(row.at("ended_at").get<std::string>()));
+               row.at("cut").get<std::string>(), row.at("ended_at").get<std::string>());
   }
   fmt::print("report: {}\n", result.at("report").get<std::string>());
 }

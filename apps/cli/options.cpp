@@ -111,7 +111,7 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
   options->command_line = command_line_;
   CLI::App* verb = group.add_subcommand(name, what);
   verb->footer("\nExample:\n  " + example + "\n");
-  const CLI::Option* given = verb->add_option("-o,--output", options->output, output_help(name));
+  const CLI::Option* given = verb->add_option("-o,--output", options->output, "File or folder to write (required)");
   verb->add_flag("--json", options->json, "Print one JSON object on standard output");
   verb->add_flag("--quiet", options->quiet, "Print warnings only");
   verb->add_flag("--verbose", options->verbose, "Print more detail");
@@ -128,6 +128,10 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
     status_ = run(*options);
   });
   return verb;
+}
+
+void describe_output(CLI::App& verb, const std::string& without) {
+  verb.get_option("--output")->description("File or folder to write; " + without);
 }
 
 int run_step(const CommonOptions& options, const std::function<steps::StepResult(const steps::StepContext&)>& step,

@@ -110,6 +110,12 @@ class Application {
   int status_ = kDone;
 };
 
+/// Says in a verb's help what happens without -o. Unless a verb says so, -o is required (required_output).
+void describe_output(CLI::App& verb, const std::string& without);
+/// Of the verbs that write beside the case, see output_of.
+inline constexpr const char* kBesideCase = "by default `out` in the case's folder";
+inline constexpr const char* kNothingByDefault = "by default nothing is written";
+
 /// Prints the result: with --json the one object on standard output, else a short table.
 void print_result(const CommonOptions& options, const nlohmann::ordered_json& result);
 /// Runs a step of the library with the command's console and threads, and prints its result.

@@ -51,6 +51,7 @@ void add_assess(Application& application) {
       "incise assess specimen --calibration calibration/calibration.json --registration "
       "registration/registration.json -o out",
       assess_case);
+  describe_output(*verb, kBesideCase);
   verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
   add_calibrated_options(*verb, a.calibrated)->required();
   verb->add_option("--registration", a.registration, "registration.json of `incise register` for this specimen")

@@ -78,6 +78,7 @@ void add_audit(Application& application) {
   auto [verb, a] = application.add_verb<AuditArguments>(
       "audit", "Find the rows of a published table that no data can produce; exit status 4 if there are any",
       "incise audit data/published_tables/table_1.csv", run);
+  describe_output(*verb, kNothingByDefault);
   verb->add_option("table", a.table,
                    "Table with the digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, "
                    "score_percent, and PART_mean_mm, PART_sd_mm, PART_n of each part that a row pools")

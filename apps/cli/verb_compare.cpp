@@ -81,6 +81,7 @@ int run(const CompareArguments& arguments, const CommonOptions& options) {
 void add_compare(Application& application) {
   auto [verb, a] = application.add_verb<CompareArguments>(
       "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison", run);
+  describe_output(*verb, kNothingByDefault);
   verb->add_option("--before", a.before,
                    "Files of `incise evaluate -o` for the cuts before the change, one for each specimen")
       ->required();

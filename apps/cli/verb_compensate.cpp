@@ -74,6 +74,7 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
 void add_compensate(Application& application) {
   auto [verb, a] =
       application.add_verb<CompensateOptions>("compensate", "", "incise compensate specimen -o out", compensate);
+  describe_output(*verb, kBesideCase);
   verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, a.cut);
   add_compensation_method(*verb, a.cut);

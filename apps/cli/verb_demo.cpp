@@ -42,6 +42,7 @@ int demo(const CutOptions& cut, const CommonOptions& options) {
 
 void add_demo(Application& application) {
   auto [verb, cut] = application.add_verb<CutOptions>("demo", "", "incise demo -o demo", demo);
+  describe_output(*verb, "by default `demo`");
   add_cut_options(*verb, cut);
   add_compensation_method(*verb, cut);
   add_accept(*verb, cut.accepted);

@@ -64,6 +64,7 @@ int run(const EvaluateArguments& arguments, const CommonOptions& options) {
 void add_evaluate(Application& application) {
   auto [verb, a] = application.add_verb<EvaluateArguments>(
       "evaluate", "", "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json", run);
+  describe_output(*verb, kNothingByDefault);
   verb->add_option("photo", a.request.photo, "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
   verb->add_option("--specimen-id", a.request.specimen_id,
                    "Id of the specimen that was cut, as in its case: calibrate refuses any other")

@@ -63,6 +63,7 @@ void add_forecast(Application& application) {
       "Forecast the error of this ring from photographs of earlier cuts: the expected error by direction, with and "
       "without the simulation, its uncertainty, and in which respects the ring lies outside those photographed",
       "incise forecast specimen --calibration calibration/calibration.json -o out", forecast_case);
+  describe_output(*verb, kBesideCase);
   verb->add_option(
           "case", a.case_path,
           "Case file, or a folder with case.yaml; its Young's modulus must be the one derived from the measured pull")

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <vector>
 
 namespace incise::cli {
@@ -72,32 +71,6 @@ std::string line_of(const std::string& verb) {
     }
   }
   throw InvalidArgument(fmt::format("line_of: no line for the verb {}", verb));
-}
-
-std::string output_help(const std::string& verb) {
-  static constexpr const char* kBesideCase = "; by default `out` in the case's folder";
-  static constexpr const char* kNothing = "; by default nothing is written";
-  // All other verbs call CommonOptions::required_output.
-  static const std::map<std::string, const char*> optional{
-      {"run", kBesideCase},
-      {"deform", kBesideCase},
-      {"plan", kBesideCase},
-      {"simulate", kBesideCase},
-      {"forecast", kBesideCase},
-      {"compensate", kBesideCase},
-      {"assess", kBesideCase},
-      {"evaluate", kNothing},
-      {"compare", kNothing},
-      {"audit", kNothing},
-      {"replay", kNothing},
-      {"verify", kNothing},
-      {"demo", "; by default `demo`"},
-      {"report", "; by default report.html in the run's folder, or here without one"},
-      {"schema", "; by default standard output"},
-      {"power", " (required, except with --only-speed)"},
-      {"studio", " (not used: the studio writes into `out` in the case's folder)"}};
-  const auto found = optional.find(verb);
-  return fmt::format("File or folder to write{}", found == optional.end() ? " (required)" : found->second);
 }
 
 std::string VerbList::make_subcommands(const CLI::App* app, CLI::AppFormatMode /*mode*/) const {

@@ -8,8 +8,6 @@ namespace incise::cli {
 
 /// Returns what a verb does, as the one line in `incise --help`. @throws InvalidArgument for a verb without one.
 [[nodiscard]] std::string line_of(const std::string& verb);
-/// Returns the help of a verb's -o, which says what happens without it.
-[[nodiscard]] std::string output_help(const std::string& verb);
 
 /// Lists the application's verbs in groups, one line each; the verbs to begin with come first.
 class VerbList : public CLI::Formatter {

@@ -46,6 +46,7 @@ void add_power(Application& application) {
       "on four tongues. Also bulge against speed, and a surgeon's speed from timed cuts. Virtual. If interrupted, it "
       "keeps every finished cut, and the same command continues",
       "incise power --specimens 4 --speeds-mm-s 3,5,7,9,11 -o power", run_power);
+  describe_output(*verb, "required, except with --only-speed");
   verb->add_option("specimen", a.files,
                    "Specimen files (incise schema bench); without them specimens are drawn from seeds");
   verb->add_option("--specimens", a.specimens, "Number of specimens to draw, with seeds from --seed on; 4 if not given")

@@ -21,6 +21,7 @@ void add_replay(Application& application) {
       "Play a program and show what the tip of the tool would do. Exit status 4 if it cannot be run, or the tip leaves "
       "its path",
       "incise replay cut.script --speed-slider 50 -o replay", run_replay);
+  describe_output(*verb, kNothingByDefault);
   verb->add_option("program", a.program, "A program that `incise export` wrote: URScript, .csv or .json")->required();
   verb->add_option("--speed-slider", a.slider_percent, "Setting of the controller's speed slider, percent")
       ->check(CLI::Range(1.0, 100.0));

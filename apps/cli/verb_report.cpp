@@ -40,6 +40,7 @@ void add_report(Application& application) {
         print_result(options, {{"report", output.string()}});
         return kDone;
       });
+  describe_output(*verb, "by default report.html in the run's folder, or here without one");
   verb->add_option("folder", a.folder, "A folder made by run, demo, simulate, …");
   verb->add_option("--registration", a.registration,
                    "A folder made by register: its figure and numbers go into the report");

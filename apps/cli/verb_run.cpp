@@ -16,6 +16,7 @@ void add_run(Application& application) {
         require_accepted_ids(cut->accepted);
         return run_whole_loop(*case_path, output_of(*case_path, options), options, *cut);
       });
+  describe_output(*verb, kBesideCase);
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
   add_cut_options(*verb, *cut);
   add_compensation_method(*verb, *cut);

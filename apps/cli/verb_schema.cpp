@@ -40,6 +40,7 @@ void add_schema(Application& application) {
         }
         return kDone;
       });
+  describe_output(*verb, "by default standard output");
   verb->add_option("what", a.what, "Kind of file: bench, bench2, case or path")
       ->check(CLI::IsMember({"bench", "bench2", "case", "path"}))
       ->required();

@@ -14,6 +14,7 @@ void add_stage(Application& application, const char* name, const char* what, con
       return steps::run_stages(case_request(*case_path, stage, options, *cut), context);
     });
   });
+  describe_output(*verb, kBesideCase);
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
   if (stage == Stage::Simulate) add_cut_options(*verb, *cut);
 }

@@ -49,6 +49,7 @@ void add_studio(Application& application) {
       "studio", "See the specimen, draw the tumour's edge, plan and watch the cut, in a browser on this machine",
       "incise studio my_patient",
       [](const StudioArguments& arguments, const CommonOptions&) { return run_studio(arguments); });
+  describe_output(*verb, "not used: the studio writes into `out` in the case's folder");
   verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml; none: choose in the browser");
   verb->add_option("--root", a.roots,
                    "Folder whose files may also be opened, besides the folder in which the studio is started");

@@ -83,6 +83,7 @@ int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
 void add_verify(Application& application) {
   auto [verb, a] = application.add_verb<VerifyArguments>(
       "verify", "", "incise verify --only cantilever --figures figures", run_verify);
+  describe_output(*verb, kNothingByDefault);
   verb->add_option("--only", a.settings.only, "Run only the checks whose name starts with this");
   verb->add_option("--figures", a.figures, "Folder for one SVG plot per check");
   verb->add_option("--tolerance-scale", a.settings.tolerance_scale,

@@ -92,6 +92,11 @@ void write_whole(const std::filesystem::path& path, io_detail::VtkXmlText& text)
 
 }  // namespace
 
+bool is_surface_name(const std::filesystem::path& path) {
+  const std::string ending = io_detail::lower_case(path.extension().string());
+  return ending == ".ply" || ending == ".stl" || ending == ".obj" || ending == ".vtp";
+}
+
 TriMesh read_cloud(const std::filesystem::path& path) {
   const std::string ending = io_detail::lower_case(path.extension().string());
   TriMesh surface;
@@ -104,7 +109,7 @@ TriMesh read_cloud(const std::filesystem::path& path) {
   else if (ending == ".vtp")
     surface = io_detail::read_vtp_surface(path);
   else
-    throw DataError(path, "", fmt::format("the ending '{}'", ending), ".ply, .stl, .obj or .vtp");
+    throw DataError(path, "", fmt::format("the ending '{}'", ending), kSurfaceFormats);
   if (surface.vertices.empty()) throw DataError(path, "", "no points", "at least one");
   return surface;
 }

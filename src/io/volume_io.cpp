@@ -85,11 +85,8 @@ void require_exists(const fs::path& path) {
   require_file_or_folder(path);
 }
 
-constexpr const char* kFormats =  // of a single file
-    ".nrrd, .nhdr, .nii, .nii.gz, .mhd or .mha";
-
 /// Returns the format of a single file. @throws DataError if its name has no format of a volume.
-VolumeFormat format_of_file(const fs::path& path, const char* expected) {
+VolumeFormat format_of_file(const fs::path& path, const std::string& expected) {
   const auto format = format_of_name(path);
   if (format && *format != VolumeFormat::PictureStack) return *format;
   if (format || looks_like_dicom(path)) {
@@ -156,7 +153,7 @@ ReadVolume read_any_ct(const fs::path& path, const CtReadSettings& settings, Mon
   const VolumeFormat format =
       fs::is_directory(path)
           ? format_of_folder(path)
-          : format_of_file(path, ".nrrd, .nhdr, .nii, .nii.gz, .mhd, .mha, or a folder of DICOM or PNG slices");
+          : format_of_file(path, fmt::format("{}, or a folder of DICOM or PNG slices", kLabelFormats));
   refuse_foreign_settings(path, format, settings);
   if (format == VolumeFormat::DicomSeries) return read_dicom_folder(path, settings, monitor);
   if (format == VolumeFormat::PictureStack) return read_picture_folder(path, settings, monitor);
@@ -173,8 +170,8 @@ ReadVolume read_ct(const fs::path& path, const CtReadSettings& settings, Monitor
 
 LabelVolume read_labels(const fs::path& path) {
   require_exists(path);
-  if (fs::is_directory(path)) throw DataError(path, "", "a folder", fmt::format("a file of labels: {}", kFormats));
-  const RawImage image = read_itk_image(path, format_of_file(path, kFormats));
+  if (fs::is_directory(path)) throw DataError(path, "", "a folder", fmt::format("a file of labels: {}", kLabelFormats));
+  const RawImage image = read_itk_image(path, format_of_file(path, kLabelFormats));
   LabelVolume labels;
   require_compact_voxels(path, image.grid.spacing_mm);
   labels.grid = image.grid;
@@ -184,7 +181,7 @@ LabelVolume read_labels(const fs::path& path) {
 
 GrayVolume read_gray(const fs::path& path) {
   require_exists(path);
-  const RawImage image = read_itk_image(path, format_of_file(path, kFormats));
+  const RawImage image = read_itk_image(path, format_of_file(path, kLabelFormats));
   if (image.component != Component::F32) throw DataError(path, "voxels", "another type", "32-bit floats");
   GrayVolume volume;
   volume.grid = image.grid;

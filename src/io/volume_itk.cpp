@@ -376,8 +376,7 @@ RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
 VolumeFormat format_to_write(const fs::path& path) {
   const auto format = format_of_name(path);
   if (format && *format != VolumeFormat::PictureStack) return *format;
-  throw DataError(path, "extension", fmt::format("'{}'", path.extension().string()),
-                  ".nrrd, .nhdr, .nii, .nii.gz, .mhd or .mha");
+  throw DataError(path, "extension", fmt::format("'{}'", path.extension().string()), kLabelFormats);
 }
 
 void write_itk_image(const fs::path& path, const VolumeGrid& grid, Component component, const void* voxels) {

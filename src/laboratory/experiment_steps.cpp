@@ -6,6 +6,7 @@
 #include <incise/io/input_file.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -120,18 +121,22 @@ std::string end_of(std::string text) {
 }  // namespace
 
 std::string refusal_of(const std::string& step, const StepAnswer& answer) {
-  std::string why;
-  for (const char* key : {"outcome", "reasons"}) {
-    if (answer.result.is_object() && answer.result.contains(key)) why += " " + answer.result.at(key).dump();
+  std::string text = step + ": not acceptable";
+  const nlohmann::json& result = answer.result;
+  if (!result.is_object()) return text;
+  if (const auto outcome = result.find("outcome"); outcome != result.end() && outcome->is_string())
+    text += ": " + outcome->get<std::string>();
+  std::vector<std::string> why;
+  if (const auto reasons = result.find("reasons"); reasons != result.end() && reasons->is_array()) {
+    for (const nlohmann::json& reason : *reasons)
+      why.push_back(reason.is_string() ? reason.get<std::string>() : reason.dump());
   }
   // Of a program that the verdict refused, its worst reason.
-  const nlohmann::json worst = answer.result.is_object()
-                                   ? answer.result.value("/verdict/reasons/0/id"_json_pointer, nlohmann::json())
-                                   : nlohmann::json();
-  if (worst.is_string())
-    why += fmt::format(" ({}: {})", answer.result.at("/verdict/status"_json_pointer).get<std::string>(),
-                       worst.get<std::string>());
-  return fmt::format("{}: not acceptable{}", step, why);
+  if (const nlohmann::json worst = result.value("/verdict/reasons/0/id"_json_pointer, nlohmann::json());
+      worst.is_string())
+    why.push_back(
+        fmt::format("{}: {}", result.at("/verdict/status"_json_pointer).get<std::string>(), worst.get<std::string>()));
+  return why.empty() ? text : fmt::format("{} ({})", text, fmt::join(why, "; "));
 }
 
 ExperimentSteps::ExperimentSteps(std::filesystem::path folder, Workers& workers, const Monitor& monitor)

@@ -206,7 +206,6 @@ Measured from_photo(const EvaluateRequest& request) {
   for (const VerdictReason& reason : result.verdict.reasons()) {
     result.warnings.push_back(fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
   }
-  result.json["warnings"] = result.warnings;
   result.json["verdict"] = to_json(result.verdict);
   if (!request.figure.empty()) {
     const std::string png = encode_png(draw_found(picture, {&found.green, &found.red}, scale.marks_px));
@@ -329,7 +328,7 @@ EvaluatedCut evaluate_in_pixels(const EvaluateRequest& asked, const StepContext&
   const std::vector<std::filesystem::path> inputs{request.photo, request.incision, request.tumor, request.line};
   const std::string specimen_id = specimen_of(request, inputs);
   Measured found = request.photo.empty() ? from_files(request) : from_photo(request);
-  if (!found.json.contains("warnings")) found.json["warnings"] = found.warnings;  // a photograph's precede its verdict
+  found.json["warnings"] = found.warnings;
   if (!specimen_id.empty()) found.json["specimen_id"] = specimen_id;
   if (!request.output.empty()) write_json(request.output, found.json);
   for (const std::string& warning : found.warnings) context.monitor.message(Severity::Warning, warning);

@@ -2,6 +2,7 @@
 #include <incise/io/contour_io.hpp>
 #include <incise/io/mesh_io.hpp>
 #include <incise/io/surface_io.hpp>
+#include <incise/io/volume_io.hpp>
 #include <incise/meshing/mesher.hpp>
 #include <incise/steps/tissue_steps.hpp>
 #include <incise/storage/own_files.hpp>
@@ -9,27 +10,18 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-
 namespace incise::steps {
 namespace {
-
-bool is_surface(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".stl" || ending == ".ply" || ending == ".obj" || ending == ".vtp";
-}
 
 /// The reader of labels judges what it knows, such as a slice; of other files it would not say that surfaces will do.
 void require_known_format(const std::filesystem::path& input) {
   const std::filesystem::path ending = input.extension();
-  if (is_surface(input) || !std::filesystem::is_regular_file(input) || ending.empty() || ending == ".dcm") return;
+  if (is_surface_name(input) || !std::filesystem::is_regular_file(input) || ending.empty() || ending == ".dcm") return;
   try {
     require_volume_name(input);
   } catch (const DataError&) {
     throw DataError(input, "extension", fmt::format("'{}'", input.extension().string()),
-                    "labels (.nrrd, .nhdr, .nii, .nii.gz, .mhd, .mha) or a closed surface (.stl, .ply, .obj, .vtp)");
+                    fmt::format("labels ({}) or a closed surface ({})", kLabelFormats, kSurfaceFormats));
   }
 }
 
@@ -54,7 +46,7 @@ MeshingResult meshed(const MeshRequest& request, const PlannedCut& cut, const Me
                      Monitor& monitor) {
   const std::filesystem::path& input = request.input;
   try {
-    if (!is_surface(input)) {
+    if (!is_surface_name(input)) {
       const LabelVolume labels = read_labels(input);
       return mesh_labels(labels, sizing_of(request, cut, longest_side_mm(labels)), settings, monitor);
     }

@@ -77,6 +77,11 @@ TEST_F(SurfaceFile, PlyAndVtpReadBackExactly) {
   }
 }
 
+TEST(SurfaceName, IsKnownInAnyCase) {
+  for (const char* name : {"a.ply", "a.STL", "b/c.Obj", "a.b.vtp"}) EXPECT_TRUE(is_surface_name(name)) << name;
+  for (const char* name : {"a.nrrd", "ply", "a.ply.gz", ""}) EXPECT_FALSE(is_surface_name(name)) << name;
+}
+
 TEST_F(SurfaceFile, CloudsHaveNoTriangles) {
   TriMesh cloud;
   cloud.vertices = {Vec3(1, 2, 3), Vec3(4, 5, 6)};

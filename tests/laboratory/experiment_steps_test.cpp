@@ -26,5 +26,16 @@ TEST(ExperimentSteps, CountWhatNoEarlierRunAnswered) {
   EXPECT_EQ(second.computed(), 1U);
 }
 
+TEST(RefusalOf, NamesOutcomeAndReasonsInWords) {
+  StepAnswer answer;
+  EXPECT_EQ(refusal_of("register", answer), "register: not acceptable");
+  answer.result = {{"outcome", "other_shape"}, {"reasons", {"another shape", "a second \"reason\""}}};
+  EXPECT_EQ(refusal_of("register", answer),
+            "register: not acceptable: other_shape (another shape; a second \"reason\")");
+  answer.result = {{"outcome", "success"},
+                   {"verdict", {{"status", "refused"}, {"reasons", {{{"id", "program_check"}}}}}}};
+  EXPECT_EQ(refusal_of("export", answer), "export: not acceptable: success (refused: program_check)");
+}
+
 }  // namespace
 }  // namespace incise::laboratory

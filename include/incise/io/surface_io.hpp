@@ -22,6 +22,10 @@ namespace incise {
 /// @throws DataError naming the line, byte or item: missing, truncated or damaged file, non-finite coordinates, no
 ///         triangles.
 [[nodiscard]] TriMesh read_surface(const std::filesystem::path& path);
+/// Endings of read_surface's formats, for messages.
+inline constexpr const char* kSurfaceFormats = ".ply, .stl, .obj or .vtp";
+/// Returns whether a name, in any case, has the ending of a format of read_surface.
+[[nodiscard]] bool is_surface_name(const std::filesystem::path& path);
 
 /// Reads a surface or a point cloud, which is a TriMesh without triangles: as read_surface, but triangles are optional.
 /// @throws DataError as read_surface, or if there are no points.

@@ -111,6 +111,8 @@ struct ReadVolume {
 /// Reads labels, integers in [0, 255], from .nrrd/.nhdr, .nii/.nii.gz or .mhd/.mha; mm, LPS.
 /// @throws DataError as read_ct, or naming the first voxel that holds no such integer.
 [[nodiscard]] LabelVolume read_labels(const std::filesystem::path& path);
+/// Endings of read_labels' formats, for messages.
+inline constexpr const char* kLabelFormats = ".nrrd, .nhdr, .nii, .nii.gz, .mhd or .mha";
 
 /// Writes .nrrd, .nhdr (with its .raw.gz beside it), .nii, .nii.gz, .mhd (with its .zraw beside it) or .mha, all or
 /// nothing. Voxels are kept exactly; geometry in double precision, except in NIfTI, whose single precision keeps about

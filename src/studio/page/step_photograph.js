@@ -303,31 +303,11 @@ function ByClock({evaluation}) {
     "details",
     null,
     h("summary", null, "Signed error by the clock"),
-    h(
-      "table",
-      {class: "numbers-table"},
-      h(
-        "thead",
-        null,
-        h(
-          "tr",
-          null,
-          ["O'clock", "Mean", "Least", "Greatest"].map((name) => h("th", {key: name, scope: "col"}, name)),
-        ),
-      ),
-      h(
-        "tbody",
-        null,
-        list.map((one) =>
-          h(
-            "tr",
-            {key: one.hour},
-            h("th", {scope: "row"}, one.hour),
-            [one.mean_mm, one.min_mm, one.max_mm].map((value, k) => h("td", {key: k}, mm(value))),
-          ),
-        ),
-      ),
-    ),
+    h(DataTable, {
+      head: ["O'clock", "Mean", "Least", "Greatest"],
+      rows: list.map((one) => [one.hour, one.hour, mm(one.mean_mm), mm(one.min_mm), mm(one.max_mm)]),
+      keyName: "data-hour",
+    }),
   );
 }
 
