@@ -84,7 +84,7 @@ class CtTest(CommandTest):
     def test_mesh_names_the_formats_that_it_reads(self):
         small_case.write_contour(self.folder / "tumor.csv", small_case.ring())
         done = self.incise("mesh", "tumor.csv", "-o", "out.vtu")
-        self.assert_refused(done, BAD_DATA, "tumor.csv: extension: found '.csv', expected labels (.nrrd,", "a closed surface (.stl, .ply, .obj, .vtp)")
+        self.assert_refused(done, BAD_DATA, "tumor.csv: extension: found '.csv', expected labels (.nrrd,", "a closed surface (.ply, .stl, .obj or .vtp)")
 
     def test_segment_names_the_options_that_pictures_need(self):
         (self.folder / "ct").mkdir()
