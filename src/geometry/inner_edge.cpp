@@ -59,18 +59,15 @@ std::optional<DepthBuffer> picture_of(const CutSurface& surface, const Points& i
 }
 
 Raster visible_skin(const DepthBuffer& picture, const CutSurface& surface) {
-  Raster skin(picture, 0);
-  for (std::size_t p = 0; p < skin.pixels.size(); ++p) {
+  return set_where(picture, [&](std::size_t p) {
     const std::int32_t triangle = picture.triangles[p];
-    if (triangle >= 0 && surface.is_skin[static_cast<std::size_t>(triangle)] != 0) skin.pixels[p] = 1;
-  }
-  return skin;
+    return triangle >= 0 && surface.is_skin[static_cast<std::size_t>(triangle)] != 0;
+  });
 }
 
 /// Whether the plug extends to the body's silhouette: it borders on empty pixels that continue to the picture's border.
 bool borders_on_outside(const Raster& plug, const DepthBuffer& picture, double reach_mm) {
-  Raster empty(picture, 0);
-  for (std::size_t p = 0; p < empty.pixels.size(); ++p) empty.pixels[p] = picture.triangles[p] < 0 ? 1 : 0;
+  const Raster empty = set_where(picture, [&](std::size_t p) { return picture.triangles[p] < 0; });
   const Components parts = find_components(empty, 1, Connectivity::Eight);
   const Raster around = dilated(plug, reach_mm);
   for (std::size_t p = 0; p < around.pixels.size(); ++p) {
@@ -90,8 +87,8 @@ std::optional<Raster> plug_of(const DepthBuffer& picture, const CutSurface& surf
   if (!(at.x() > -0.5 && at.y() > -0.5 && at.x() < picture.width - 0.5 && at.y() < picture.height - 0.5))
     return std::nullopt;
   const Components parts = find_components(mended, 1, Connectivity::Four);
-  const std::int32_t part =
-      parts.labels[picture.offset(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())))];
+  const auto [i, j] = picture.pixel_near(inside);
+  const std::int32_t part = parts.labels[picture.offset(i, j)];
   if (part < 0 || parts.parts[static_cast<std::size_t>(part)].touches_border) return std::nullopt;
   const Raster plug = holes_filled(part_of(mended, parts, part),
                                    picture.pixel_mm * picture.pixel_mm * static_cast<double>(picture.pixel_count()));
@@ -103,10 +100,8 @@ std::optional<Raster> plug_of(const DepthBuffer& picture, const CutSurface& surf
 /// they all lie on one side.
 std::optional<double> skin_height(const Raster& plug, const DepthBuffer& picture, const CutSurface& surface,
                                   const Vec2& p) {
-  const Vec2 at = plug.index_of(p);
   const int reach = static_cast<int>(std::ceil(kHeightReachMm / plug.pixel_mm));
-  const int ci = static_cast<int>(std::lround(at.x()));
-  const int cj = static_cast<int>(std::lround(at.y()));
+  const auto [ci, cj] = plug.pixel_near(p);
   Mat3 normal_matrix = Mat3::Zero();
   Vec3 right_side = Vec3::Zero();
   int count = 0;
@@ -143,10 +138,8 @@ std::optional<Contour> edge_of(const Raster& plug, const ViewFrame& view, const 
     const std::optional<double> height = height_at(p.head<2>());
     if (height) edge.points.push_back(view.from_view({p.x(), p.y(), *height}));
   }
-  const double length = length_mm(edge);
-  if (edge.points.size() < 3 || length == 0.0) return std::nullopt;
-  const auto count = static_cast<std::size_t>(std::max(8.0, std::round(length / settings.spacing_mm)));
-  return start_farthest_along(counter_clockwise(resample(edge, count), -view.z), view.x);
+  if (edge.points.size() < 3 || length_mm(edge) == 0.0) return std::nullopt;
+  return start_farthest_along(counter_clockwise(evenly_spaced(edge, settings.spacing_mm), -view.z), view.x);
 }
 
 }  // namespace
@@ -154,10 +147,8 @@ std::optional<Contour> edge_of(const Raster& plug, const ViewFrame& view, const 
 std::optional<Contour> inner_edge_contour(const CutSurface& surface, const InnerEdgeSettings& settings) {
   require_valid(surface, settings);
   const ViewFrame view = view_along(surface.approach);
-  Points in_view;
-  in_view.reserve(surface.vertices.size());
-  for (const Vec3& p : surface.vertices) in_view.push_back(view.to_view(p));
-  const std::optional<DepthBuffer> picture = picture_of(surface, in_view, settings.pixel_mm);
+  const std::optional<DepthBuffer> picture =
+      picture_of(surface, points_in_view(surface.vertices, view), settings.pixel_mm);
   if (!picture) return std::nullopt;
   const std::optional<Raster> plug = plug_of(*picture, surface, view.to_view(surface.inside_mm).head<2>(), settings);
   if (!plug) return std::nullopt;

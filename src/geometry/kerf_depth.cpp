@@ -1,5 +1,4 @@
 #include "geometry/kerf_picture.hpp"
-#include "geometry/sight_lines.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/geometry/kerf_depth.hpp>
@@ -32,29 +31,13 @@ void require_valid(const KerfDepthSettings& s, const Contour& course) {
 
 /// Returns the depth of the lowest removed point below the skin in each line of sight, mm; 0 where nothing is removed.
 ScalarRaster depth_picture(const KerfInput& kerf, const ViewTets& tets, const ViewFrame& view, const RasterGrid& grid) {
-  Points in_view;
-  in_view.reserve(kerf.surface.vertices.size());
-  for (const Vec3& p : kerf.surface.vertices) in_view.push_back(view.to_view(p));
-  const DepthBuffer skin = depth_buffer(grid, in_view, kerf.surface.triangles);
+  const DepthBuffer skin = depth_buffer(grid, points_in_view(kerf.surface.vertices, view), kerf.surface.triangles);
   ScalarRaster depth(grid, 0.0);
-  for (const std::array<Vec3, 4>& corners : tets) {
-    Box3 box;
-    for (const Vec3& corner : corners) box.extend(corner);
-    const SightLines tet(corners);
-    const Vec2 first = grid.index_of(box.min().head<2>());
-    const Vec2 last = grid.index_of(box.max().head<2>());
-    for (int j = std::max(0, static_cast<int>(std::ceil(first.y())));
-         j <= std::min(grid.height - 1, static_cast<int>(std::floor(last.y()))); ++j) {
-      for (int i = std::max(0, static_cast<int>(std::ceil(first.x())));
-           i <= std::min(grid.width - 1, static_cast<int>(std::floor(last.x()))); ++i) {
-        const std::size_t pixel = grid.offset(i, j);
-        if (skin.triangles[pixel] < 0) continue;
-        const double top = skin.heights_mm[pixel];
-        const SightLines::Span gone = tet.within(grid.centre(i, j), -std::numeric_limits<double>::infinity(), top);
-        if (gone.low <= gone.high) depth.pixels[pixel] = std::max(depth.pixels[pixel], top - gone.low);
-      }
-    }
-  }
+  for_each_pixel_over(tets, skin, [&](std::size_t pixel, const Vec2& centre, const SightLines& tet) {
+    const double top = skin.heights_mm[pixel];
+    const SightLines::Span gone = tet.within(centre, -std::numeric_limits<double>::infinity(), top);
+    if (gone.low <= gone.high) depth.pixels[pixel] = std::max(depth.pixels[pixel], top - gone.low);
+  });
   return depth;
 }
 
@@ -66,9 +49,8 @@ double deepest_across(const ScalarRaster& depth, const Vec2& p, const Vec2& acro
       std::min(2 * half + 1, std::max(1, static_cast<int>(std::lround(settings.needle_diameter_mm / step))));
   std::vector<double> sum_before{0.0};
   for (int k = -half; k <= half; ++k) {
-    const Vec2 at = depth.index_of(p + k * step * across);
-    sum_before.push_back(sum_before.back() + depth.at_or(static_cast<int>(std::lround(at.x())),
-                                                         static_cast<int>(std::lround(at.y())), 0.0));
+    const auto [i, j] = depth.pixel_near(p + k * step * across);
+    sum_before.push_back(sum_before.back() + depth.at_or(i, j, 0.0));
   }
   double deepest = 0.0;
   for (std::size_t end = static_cast<std::size_t>(window); end < sum_before.size(); ++end) {
@@ -81,22 +63,17 @@ double deepest_across(const ScalarRaster& depth, const Vec2& p, const Vec2& acro
 
 DepthProfile depth_along(const KerfInput& kerf, const Contour& course, const KerfDepthSettings& settings) {
   require_valid(settings, course);
-  const double length = length_mm(course);
-  const auto count = static_cast<std::size_t>(std::max(8.0, std::round(length / settings.spacing_mm)));
   DepthProfile profile;
-  profile.course = resample(course, count);
-  const double spacing = length / static_cast<double>(course.is_closed ? count : count - 1);
+  profile.course = evenly_spaced(course, settings.spacing_mm);
+  const std::size_t count = profile.course.points.size();
+  const double spacing = length_mm(course) / static_cast<double>(course.is_closed ? count : count - 1);
   const ViewFrame view = view_along(kerf.approach);
-  Contour in_view{{}, course.is_closed};
-  Box3 box;
-  for (std::size_t i = 0; i < count; ++i) {
-    profile.arclength_mm.push_back(spacing * static_cast<double>(i));
-    in_view.points.push_back(view.to_view(profile.course.points[i]));
-    box.extend(in_view.points.back());
-  }
+  const Contour in_view{points_in_view(profile.course.points, view), course.is_closed};
+  const Box3 box = bounding_box(in_view.points);
   const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), settings.pixel_mm, settings.reach_mm);
   const ScalarRaster depth = depth_picture(kerf, tets_in_view(kerf, view), view, grid);
   for (std::size_t i = 0; i < count; ++i) {
+    profile.arclength_mm.push_back(spacing * static_cast<double>(i));
     profile.depth_mm.push_back(deepest_across(depth, in_view.points[i].head<2>(), normal_at(in_view, i), settings));
   }
   return profile;

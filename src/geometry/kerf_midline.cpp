@@ -26,9 +26,9 @@ constexpr double kDirectionMm = 2.0;
 /// Spacing of the mid-line during the computation, in pixels.
 constexpr double kWorkingSpacing = 1.0;
 
-Contour evenly_spaced(const Contour& curve, double spacing_mm) {
-  const auto count = static_cast<std::size_t>(std::max(8.0, std::round(length_mm(curve) / spacing_mm)));
-  return resample(curve, count);
+bool is_kerf(const KerfPicture& picture, const Vec2& p) {
+  const auto [i, j] = picture.mask.pixel_near(p);
+  return picture.mask.at_or(i, j, 0) != 0;
 }
 
 /// Middle and width of the removed tissue across the kerf.
@@ -39,10 +39,6 @@ struct CrossSection {
 
 CrossSection section_across(const KerfPicture& picture, const Vec2& p, const Vec2& normal) {
   const double step = 0.5 * picture.mask.pixel_mm;
-  const auto is_kerf = [&](double s) {
-    const Vec2 at = picture.mask.index_of(p + s * normal);
-    return picture.mask.at_or(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())), 0) != 0;
-  };
   double weights = 0.0;
   double moments = 0.0;
   const auto add = [&](double s) {
@@ -50,9 +46,9 @@ CrossSection section_across(const KerfPicture& picture, const Vec2& p, const Vec
     weights += share;
     moments += share * s;
   };
-  if (is_kerf(0.0)) add(0.0);
+  if (is_kerf(picture, p)) add(0.0);
   for (const double side : {-1.0, 1.0}) {
-    for (double s = step; s < kMaxHalfWidthMm && is_kerf(side * s); s += step) add(side * s);
+    for (double s = step; s < kMaxHalfWidthMm && is_kerf(picture, p + side * s * normal); s += step) add(side * s);
   }
   if (weights == 0.0) return {};
   return {moments / weights, weights * step};
@@ -83,10 +79,8 @@ double mean_width(const KerfPicture& picture, const Contour& curve) {
 /// Returns the line equally far from the tissue inside the ring and from all other tissue: the zero level of a
 /// difference of distances. It separates the two, so it is closed whatever the shape of the kerf.
 std::optional<Contour> equidistant_loop(const KerfPicture& picture, const Raster& inside, const Vec3& enclosed) {
-  Raster outside(picture.mask, 0);
-  for (std::size_t p = 0; p < outside.pixels.size(); ++p) {
-    outside.pixels[p] = picture.mask.pixels[p] == 0 && inside.pixels[p] == 0 ? 1 : 0;
-  }
+  const Raster outside = set_where(
+      picture.mask, [&](std::size_t p) { return picture.mask.pixels[p] == 0 && inside.pixels[p] == 0; });
   const ScalarRaster to_inside = distance_to(inside, 1);
   const ScalarRaster to_outside = distance_to(outside, 1);
   ScalarRaster difference(picture.mask, 0.0);
@@ -111,10 +105,7 @@ Contour extended_to_ends(const KerfPicture& picture, Contour curve, const KerfMi
     Vec3 at = end;
     for (double s = step; s < kMaxHalfWidthMm; s += step) {
       const Vec3 next = end + s * along;
-      const Vec2 index = picture.mask.index_of(next.head<2>());
-      if (picture.mask.at_or(static_cast<int>(std::lround(index.x())), static_cast<int>(std::lround(index.y())), 0) ==
-          0)
-        break;
+      if (!is_kerf(picture, next.head<2>())) break;
       at = next;
     }
     return at;

@@ -1,7 +1,5 @@
 #include "geometry/kerf_picture.hpp"
 
-#include "geometry/sight_lines.hpp"
-
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/disjoint_sets.hpp>
@@ -24,47 +22,20 @@ constexpr double kKerfBorderMm = 3.0;
 /// Number of directions that the search for a gap distinguishes.
 constexpr int kDirections = 3600;
 
-}  // namespace
-
-ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view) {
-  ViewTets tets = input.removed_tets;
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    for (Vec3& corner : tets[t]) {
-      INCISE_REQUIRE(corner.allFinite(), fmt::format("removed tet {} has a corner that is not finite", t));
-      corner = view.to_view(corner);
-    }
-  }
-  return tets;
-}
-
-namespace {
-
 ScalarRaster coverage_of(const ViewTets& tets, const DepthBuffer& surface, const KerfMidlineSettings& settings) {
   ScalarRaster coverage(surface, 0.0);
   const double thickness = settings.layer_bottom_mm - settings.layer_top_mm;
-  for (const std::array<Vec3, 4>& corners : tets) {
-    Box3 box;
-    for (const Vec3& corner : corners) box.extend(corner);
-    const SightLines tet(corners);
-    const Vec2 first = surface.index_of(box.min().head<2>());
-    const Vec2 last = surface.index_of(box.max().head<2>());
-    for (int j = static_cast<int>(std::ceil(first.y())); j <= static_cast<int>(std::floor(last.y())); ++j) {
-      for (int i = static_cast<int>(std::ceil(first.x())); i <= static_cast<int>(std::floor(last.x())); ++i) {
-        const std::size_t pixel = surface.offset(i, j);
-        if (surface.triangles[pixel] < 0) continue;
-        const double top = surface.heights_mm[pixel];
-        coverage.pixels[pixel] +=
-            tet.length(surface.centre(i, j), top - settings.layer_bottom_mm, top - settings.layer_top_mm) / thickness;
-      }
-    }
-  }
+  for_each_pixel_over(tets, surface, [&](std::size_t pixel, const Vec2& centre, const SightLines& tet) {
+    const double top = surface.heights_mm[pixel];
+    coverage.pixels[pixel] +=
+        tet.length(centre, top - settings.layer_bottom_mm, top - settings.layer_top_mm) / thickness;
+  });
   return coverage;
 }
 
 Raster mask_of(const ScalarRaster& coverage, const KerfMidlineSettings& settings) {
-  Raster mask(coverage, 0);
-  for (std::size_t p = 0; p < mask.pixels.size(); ++p)
-    mask.pixels[p] = coverage.pixels[p] >= settings.min_coverage ? 1 : 0;
+  const Raster mask =
+      set_where(coverage, [&](std::size_t p) { return coverage.pixels[p] >= settings.min_coverage; });
   return holes_filled(closed(mask, settings.closing_mm), settings.max_island_mm2);
 }
 
@@ -90,6 +61,24 @@ void require_valid(const KerfMidlineSettings& s) {
 
 }  // namespace
 
+ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view) {
+  ViewTets tets = input.removed_tets;
+  for (std::size_t t = 0; t < tets.size(); ++t) {
+    for (Vec3& corner : tets[t]) {
+      INCISE_REQUIRE(corner.allFinite(), fmt::format("removed tet {} has a corner that is not finite", t));
+      corner = view.to_view(corner);
+    }
+  }
+  return tets;
+}
+
+Points points_in_view(std::span<const Vec3> points, const ViewFrame& view) {
+  Points seen;
+  seen.reserve(points.size());
+  for (const Vec3& p : points) seen.push_back(view.to_view(p));
+  return seen;
+}
+
 std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
                                         const KerfMidlineSettings& settings) {
   require_valid(settings);
@@ -99,16 +88,18 @@ std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame&
   for (const auto& corners : tets) {
     for (const Vec3& corner : corners) box.extend(corner);
   }
-  Points in_view;
-  in_view.reserve(input.surface.vertices.size());
-  for (const Vec3& p : input.surface.vertices) in_view.push_back(view.to_view(p));
   const double border = kKerfBorderMm + settings.closing_mm;
   const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), settings.pixel_mm, border);
   KerfPicture picture;
-  picture.coverage = coverage_of(tets, depth_buffer(grid, in_view, input.surface.triangles), settings);
+  picture.coverage = coverage_of(
+      tets, depth_buffer(grid, points_in_view(input.surface.vertices, view), input.surface.triangles), settings);
   picture.mask = mask_of(picture.coverage, settings);
   if (area_mm2(picture.mask) == 0.0) return std::nullopt;
   return picture;
+}
+
+Contour evenly_spaced(const Contour& curve, double spacing_mm) {
+  return resample(curve, static_cast<std::size_t>(std::max(8.0, std::round(length_mm(curve) / spacing_mm))));
 }
 
 Vec2 normal_at(const Contour& curve, std::size_t i) {

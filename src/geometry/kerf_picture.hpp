@@ -1,11 +1,16 @@
 #pragma once
 
+#include "geometry/sight_lines.hpp"
+
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/geometry/raster.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace incise {
@@ -24,11 +29,37 @@ using ViewTets = std::vector<std::array<Vec3, 4>>;
 /// Returns the removed tets in view coordinates, mm. @throws InvalidArgument for a corner that is not finite.
 [[nodiscard]] ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view);
 
+/// Returns the points in view coordinates, mm.
+[[nodiscard]] Points points_in_view(std::span<const Vec3> points, const ViewFrame& view);
+
+/// Calls visit(pixel, centre, tet) for each tet and each pixel that shows the surface and whose centre lies in the tet's
+/// box. @param pixel  its offset.  @param tet  as SightLines.
+template <class Visit>
+void for_each_pixel_over(const ViewTets& tets, const DepthBuffer& surface, const Visit& visit) {
+  for (const std::array<Vec3, 4>& corners : tets) {
+    const Box3 box = bounding_box(corners);
+    const SightLines tet(corners);
+    const Vec2 first = surface.index_of(box.min().head<2>());
+    const Vec2 last = surface.index_of(box.max().head<2>());
+    for (int j = std::max(0, static_cast<int>(std::ceil(first.y())));
+         j <= std::min(surface.height - 1, static_cast<int>(std::floor(last.y()))); ++j) {
+      for (int i = std::max(0, static_cast<int>(std::ceil(first.x())));
+           i <= std::min(surface.width - 1, static_cast<int>(std::floor(last.x()))); ++i) {
+        const std::size_t pixel = surface.offset(i, j);
+        if (surface.triangles[pixel] >= 0) visit(pixel, surface.centre(i, j), tet);
+      }
+    }
+  }
+}
+
 /// Projects the removed tets, clipped to the layer below the surface. nullopt if nowhere enough of the layer is
 /// removed.
 /// @throws InvalidArgument for settings out of range.
 [[nodiscard]] std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
                                                       const KerfMidlineSettings& settings);
+
+/// Returns the curve with evenly spaced points, `spacing_mm` apart or a little more or less; at least 8.
+[[nodiscard]] Contour evenly_spaced(const Contour& curve, double spacing_mm);
 
 /// Unit normal, in the picture plane, to the left of a curve at its point i.
 /// @pre neighbours of point i do not coincide in the picture.

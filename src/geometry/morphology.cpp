@@ -49,21 +49,13 @@ ScalarRaster distance_to(const Raster& raster, std::uint8_t value) {
 Raster dilated(const Raster& raster, double radius_mm) {
   require_radius(radius_mm);
   const ScalarRaster distance = distance_to(raster, 1);
-  Raster result(raster, 0);
-  for (std::size_t p = 0; p < result.pixels.size(); ++p) {
-    result.pixels[p] = distance.pixels[p] <= radius_mm + kRadiusSlack ? 1 : 0;
-  }
-  return result;
+  return set_where(raster, [&](std::size_t p) { return distance.pixels[p] <= radius_mm + kRadiusSlack; });
 }
 
 Raster eroded(const Raster& raster, double radius_mm) {
   require_radius(radius_mm);
   const ScalarRaster distance = distance_to(raster, 0);
-  Raster result(raster, 0);
-  for (std::size_t p = 0; p < result.pixels.size(); ++p) {
-    result.pixels[p] = distance.pixels[p] > radius_mm + kRadiusSlack ? 1 : 0;
-  }
-  return result;
+  return set_where(raster, [&](std::size_t p) { return distance.pixels[p] > radius_mm + kRadiusSlack; });
 }
 
 Raster closed(const Raster& raster, double radius_mm) {
@@ -111,9 +103,7 @@ Components find_components(const Raster& raster, std::uint8_t value, Connectivit
 
 Raster part_of(const Raster& raster, const Components& components, std::int32_t part) {
   INCISE_REQUIRE(components.labels.size() == raster.pixels.size(), "the parts belong to another picture");
-  Raster result(raster, 0);
-  for (std::size_t p = 0; p < result.pixels.size(); ++p) result.pixels[p] = components.labels[p] == part ? 1 : 0;
-  return result;
+  return set_where(raster, [&](std::size_t p) { return components.labels[p] == part; });
 }
 
 std::optional<std::int32_t> largest_part(const Components& components) {

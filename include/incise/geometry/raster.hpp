@@ -3,6 +3,8 @@
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/types.hpp>
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,6 +30,11 @@ struct RasterGrid {
   [[nodiscard]] Vec2 centre(int i, int j) const { return origin_mm + pixel_mm * Vec2(i, j); }
   /// Continuous pixel coordinates of a point of the plane.
   [[nodiscard]] Vec2 index_of(const Vec2& p) const { return (p - origin_mm) / pixel_mm; }
+  /// The pixel (i, j) whose centre is nearest to a point of the plane; it may lie outside the grid.
+  [[nodiscard]] std::array<int, 2> pixel_near(const Vec2& p) const {
+    const Vec2 at = index_of(p);
+    return {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))};
+  }
 };
 
 /// A grid with one value per pixel.
@@ -46,6 +53,14 @@ struct RasterOf : RasterGrid {
 
 using Raster = RasterOf<std::uint8_t>;  ///< 1 = in the set, 0 = not
 using ScalarRaster = RasterOf<double>;
+
+/// Returns the set of the pixels for whose offsets `is_in(offset)` is true.
+template <class IsIn>
+[[nodiscard]] Raster set_where(const RasterGrid& grid, const IsIn& is_in) {
+  Raster set(grid, 0);
+  for (std::size_t p = 0; p < set.pixels.size(); ++p) set.pixels[p] = is_in(p) ? 1 : 0;
+  return set;
+}
 
 /// Returns a grid whose pixel centres cover the box [low, high] and at least `border_mm` around it.
 /// @pre finite, low <= high, pixel > 0, border >= 0.  @throws InvalidArgument also for more than 10^8 pixels.
