@@ -88,27 +88,22 @@ CloudSurface::CloudSurface(std::span<const Vec3> points, const Vec3& approach, c
                   settings.max_reach_mm));
 }
 
-std::vector<std::size_t> CloudSurface::within(const Vec2& place, double radius_mm) const {
-  std::vector<std::size_t> found;
-  for (const Neighbour& near : in_picture_.within(Vec3(place.x(), place.y(), 0.0), radius_mm))
-    found.push_back(near.index);
-  return found;
-}
-
 std::optional<CloudPlace> CloudSurface::at(const Vec2& place) const {
+  const Vec3 flat(place.x(), place.y(), 0.0);
   double radius = settings_.radius_mm;
-  std::vector<std::size_t> found = within(place, radius);
+  std::vector<Neighbour> found = in_picture_.within(flat, radius);
   while (found.size() < kLeastPoints && radius < settings_.max_reach_mm) {
     radius = std::min(2.0 * radius, settings_.max_reach_mm);
-    found = within(place, radius);
+    found = in_picture_.within(flat, radius);
   }
   if (found.size() < kLeastPoints) return std::nullopt;
+  const Vec3 origin(place.x(), place.y(), in_view_[found.front().index].z());
   std::vector<Vec3> near;
   std::vector<double> weights;
   CloudPlace result;
   result.gap_mm = std::numeric_limits<double>::infinity();
-  for (const std::size_t i : found) {
-    near.push_back(in_view_[i] - Vec3(place.x(), place.y(), in_view_[found.front()].z()));
+  for (const Neighbour& neighbour : found) {
+    near.push_back(in_view_[neighbour.index] - origin);
     const double distance = near.back().head<2>().norm();
     result.gap_mm = std::min(result.gap_mm, distance);
     weights.push_back(std::pow(1.0 - std::pow(distance / radius, 2), 2) + 1e-3);
@@ -123,14 +118,14 @@ std::optional<CloudPlace> CloudSurface::at(const Vec2& place) const {
     if (std::abs(near[i].z() - height->dot(basis_of(near[i].head<2>()))) > 3.0 * deviation) kept[i] = 0.0;
   }
   if (const std::optional<Vec6> again = quadratic(near, kept)) height = again;
-  result.position_mm = frame_.from_view(Vec3(place.x(), place.y(), (*height)(0) + in_view_[found.front()].z()));
+  result.position_mm = frame_.from_view(Vec3(place.x(), place.y(), (*height)(0) + origin.z()));
   result.normal = frame_.from_view(Vec3(-(*height)(1), -(*height)(2), 1.0).normalized());
   constexpr double kEmptySide = 0.9 * std::numbers::pi;
   // At the border of a hole, one side is empty nearby but not farther away: a gap, not the rim.
   if (widest_empty_angle(near) > kEmptySide) {
     near.clear();
-    for (const std::size_t i : within(place, settings_.max_reach_mm))
-      near.push_back(in_view_[i] - Vec3(place.x(), place.y(), 0.0));
+    for (const Neighbour& neighbour : in_picture_.within(flat, settings_.max_reach_mm))
+      near.push_back(in_view_[neighbour.index] - flat);
     result.is_extrapolated = widest_empty_angle(near) > kEmptySide;
   }
   return result;

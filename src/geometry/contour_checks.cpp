@@ -1,6 +1,7 @@
 #include "plane_cross.hpp"
 
 #include <incise/geometry/contour_checks.hpp>
+#include <incise/geometry/tet_mesh.hpp>
 
 #include <fmt/format.h>
 
@@ -69,10 +70,7 @@ std::optional<Vec3> first_crossing_in_view(const Contour& contour, const Vec3& a
 }
 
 double extent_mm(const Contour& contour) {
-  if (contour.points.empty()) return 0.0;
-  Box3 box;
-  for (const Vec3& p : contour.points) box.extend(p);
-  return box.sizes().maxCoeff();
+  return contour.points.empty() ? 0.0 : bounding_box(contour.points).sizes().maxCoeff();
 }
 
 std::optional<SizeProblem> size_problem(const Contour& contour, const std::string& what, double largest_mm) {

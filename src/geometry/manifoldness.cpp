@@ -1,4 +1,3 @@
-
 #include <incise/geometry/disjoint_sets.hpp>
 #include <incise/geometry/manifoldness.hpp>
 

@@ -1,12 +1,12 @@
 #include "geometry/face_table.hpp"
 
+#include <incise/geometry/disjoint_sets.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace incise {
 namespace {
@@ -41,8 +41,7 @@ void find_bad_tets(const TetMesh& mesh, std::vector<MeshProblem>& problems) {
   Finding inverted{Kind::InvertedTet};
   Finding flat{Kind::FlatTet};
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
-    std::array<Vec3, 4> p;
-    for (std::size_t c = 0; c < 4; ++c) p[c] = vertex(mesh.vertices, mesh.tets[i][c]);
+    const std::array<Vec3, 4> p = corners_of(mesh.vertices, mesh.tets[i]);
     double longest = 0.0;
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = a + 1; b < 4; ++b) longest = std::max(longest, (p[a] - p[b]).norm());
@@ -77,26 +76,17 @@ void find_duplicates(const TetMesh& mesh, std::vector<MeshProblem>& problems) {
 
 void find_bad_faces(const TetMesh& mesh, std::vector<MeshProblem>& problems) {
   Finding shared{Kind::NonManifoldFace};
-  std::vector<std::size_t> parent(mesh.tets.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&](std::size_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets bodies(mesh.tets.size());
   for_each_face_group(mesh.tets, mesh.vertices.size(), {}, [&](std::span<const FaceEntry> group) {
     if (group.size() > 2) shared.add(group[0].tet);
-    for (std::size_t i = 1; i < group.size(); ++i) {
-      const std::size_t a = root(group[0].tet);
-      const std::size_t b = root(group[i].tet);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (std::size_t i = 1; i < group.size(); ++i) bodies.join(group[0].tet, group[i].tet);
   });
   shared.report(problems, "{} faces belong to more than two tets, the first is one of tet {}", shared.count,
                 shared.first);
 
   Finding component{Kind::Disconnected};
   for (std::size_t i = 1; i < mesh.tets.size(); ++i) {
-    if (root(i) == i) component.add(i);  // the lowest tet of each further component
+    if (bodies.root(i) == i) component.add(i);  // the lowest tet of each further component
   }
   component.report(problems, "the tets form {} bodies that share no face, the second begins with tet {}",
                    component.count + 1, component.first);

@@ -54,13 +54,11 @@ bool cross(const TriangleCorners& one, const TriangleCorners& other) {
 std::optional<std::array<TriangleId, 2>> find_self_crossing(const TriMesh& surface) {
   const std::size_t count = surface.triangles.size();
   if (count == 0) return std::nullopt;
-  std::vector<TriangleCorners> corners(count);
-  std::vector<Box3> boxes(count);
-  for (std::size_t t = 0; t < count; ++t) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      corners[t][c] = vertex(surface.vertices, surface.triangles[t][c]);
-      boxes[t].extend(corners[t][c]);
-    }
+  std::vector<TriangleCorners> corners;
+  std::vector<Box3> boxes;
+  for (const Triangle& triangle : surface.triangles) {
+    corners.push_back(corners_of(surface.vertices, triangle));
+    boxes.push_back(bounding_box(corners.back()));
   }
   const BoxTree tree(boxes);
   for (std::size_t t = 0; t < count; ++t) {

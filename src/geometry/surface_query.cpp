@@ -88,19 +88,14 @@ SurfaceQuery::SurfaceQuery(const TriMesh& surface) : tree_(std::make_unique<Tree
   boxes.reserve(surface.triangles.size());
   tree_->corners.reserve(surface.triangles.size());
   for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
-    std::array<Vec3, 3> corners;
-    Box3 box;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const VertexId id = surface.triangles[i][c];
+    for (const VertexId id : surface.triangles[i]) {
       INCISE_REQUIRE(
           id.is_valid() && id.index() < surface.vertices.size(),
           fmt::format("triangle {} names vertex {}, expected one of {}", i, id.value, surface.vertices.size()));
-      corners[c] = vertex(surface.vertices, id);
-      INCISE_REQUIRE(corners[c].allFinite(), fmt::format("vertex {} is not finite", id.value));
-      box.extend(corners[c]);
+      INCISE_REQUIRE(vertex(surface.vertices, id).allFinite(), fmt::format("vertex {} is not finite", id.value));
     }
-    tree_->corners.push_back(corners);
-    boxes.push_back(box);
+    tree_->corners.push_back(corners_of(surface.vertices, surface.triangles[i]));
+    boxes.push_back(bounding_box(tree_->corners.back()));
   }
   tree_->boxes = BoxTree(boxes);
   const Box3& all = tree_->boxes.box();

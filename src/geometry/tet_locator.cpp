@@ -57,18 +57,14 @@ TetLocator::TetLocator(const TetMesh& mesh, std::span<const Vec3> positions) : t
   boxes.reserve(mesh.tets.size());
   tree_->corners.reserve(mesh.tets.size());
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
-    TetCorners corners;
-    Box3 box;
-    for (std::size_t c = 0; c < 4; ++c) {
-      const VertexId id = mesh.tets[i][c];
+    for (const VertexId id : mesh.tets[i]) {
       INCISE_REQUIRE(id.is_valid() && id.index() < positions.size(),
                      fmt::format("tet {} names vertex {}, expected one of {}", i, id.value, positions.size()));
-      corners[c] = vertex(positions, id);
-      INCISE_REQUIRE(corners[c].allFinite(), fmt::format("the position of vertex {} is not finite", id.value));
-      box.extend(corners[c]);
+      INCISE_REQUIRE(vertex(positions, id).allFinite(),
+                     fmt::format("the position of vertex {} is not finite", id.value));
     }
-    tree_->corners.push_back(corners);
-    boxes.push_back(box);
+    tree_->corners.push_back(corners_of(positions, mesh.tets[i]));
+    boxes.push_back(bounding_box(tree_->corners.back()));
   }
   tree_->boxes = BoxTree(boxes);
 }
@@ -108,10 +104,9 @@ std::optional<EmbeddedPoint> TetLocator::locate(const Vec3& p, double tolerance_
 Vec3 position_of(const EmbeddedPoint& point, const TetMesh& mesh, std::span<const Vec3> positions) {
   INCISE_REQUIRE(point.tet.is_valid() && point.tet.index() < mesh.tets.size(),
                  fmt::format("expected one of {} tets, found {}", mesh.tets.size(), point.tet.value));
+  const TetCorners corners = corners_of(positions, mesh.tets[point.tet.index()]);
   Vec3 position = Vec3::Zero();
-  for (std::size_t c = 0; c < 4; ++c) {
-    position += point.barycentric[c] * vertex(positions, mesh.tets[point.tet.index()][c]);
-  }
+  for (std::size_t c = 0; c < 4; ++c) position += point.barycentric[c] * corners[c];
   return position;
 }
 

@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace incise {
 
@@ -17,8 +16,8 @@ double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 double volume_mm3(const TetMesh& mesh) {
   double volume = 0.0;
   for (const Tet& tet : mesh.tets) {
-    volume += signed_volume(vertex(mesh.vertices, tet[0]), vertex(mesh.vertices, tet[1]), vertex(mesh.vertices, tet[2]),
-                            vertex(mesh.vertices, tet[3]));
+    const auto [a, b, c, d] = corners_of(mesh.vertices, tet);
+    volume += signed_volume(a, b, c, d);
   }
   return volume;
 }
@@ -29,8 +28,8 @@ double enclosed_volume_mm3(const TriMesh& surface) {
   const Vec3 apex = vertex(surface.vertices, surface.triangles[0][0]);
   double volume = 0.0;
   for (const Triangle& t : surface.triangles) {
-    volume += signed_volume(apex, vertex(surface.vertices, t[0]), vertex(surface.vertices, t[1]),
-                            vertex(surface.vertices, t[2]));
+    const auto [a, b, c] = corners_of(surface.vertices, t);
+    volume += signed_volume(apex, a, b, c);
   }
   return volume;
 }
@@ -42,49 +41,22 @@ Triangle face_of(const Tet& tet, int face) {
   //     a--|--c        opposite b: a d c
   //      \ | /         opposite c: a b d
   //        b           opposite d: a c b
-  const auto& [a, b, c, d] = tet;
-  switch (face) {
-    case 0:
-      return {b, c, d};
-    case 1:
-      return {a, d, c};
-    case 2:
-      return {a, b, d};
-    case 3:
-      return {a, c, b};
-    default:
-      break;
-  }
-  INCISE_REQUIRE(false, fmt::format("expected a face 0, 1, 2 or 3, found {}", face));
-  return {};
+  constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+  INCISE_REQUIRE(face >= 0 && face < 4, fmt::format("expected a face 0, 1, 2 or 3, found {}", face));
+  const auto& [first, second, third] = kFaces[static_cast<std::size_t>(face)];
+  return {tet[first], tet[second], tet[third]};
 }
 
 std::vector<std::array<std::int32_t, 4>> face_neighbours(const TetMesh& mesh) {
-  struct Face {
-    std::array<std::int32_t, 3> key;
-    std::int32_t tet;
-    std::int32_t face;
-  };
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.tets.size());
-  for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
-    for (int face = 0; face < 4; ++face) {
-      const Triangle corners = face_of(mesh.tets[tet], face);
-      std::array<std::int32_t, 3> key{corners[0].value, corners[1].value, corners[2].value};
-      std::sort(key.begin(), key.end());
-      faces.push_back({key, static_cast<std::int32_t>(tet), face});
-    }
-  }
-  std::sort(faces.begin(), faces.end(),
-            [](const Face& a, const Face& b) { return a.key != b.key ? a.key < b.key : a.tet < b.tet; });
   std::vector<std::array<std::int32_t, 4>> neighbours(mesh.tets.size(), {-1, -1, -1, -1});
-  for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
-    const Face& a = faces[i];
-    const Face& b = faces[i + 1];
-    if (a.key != b.key) continue;
-    neighbours[static_cast<std::size_t>(a.tet)][static_cast<std::size_t>(a.face)] = b.tet;
-    neighbours[static_cast<std::size_t>(b.tet)][static_cast<std::size_t>(b.face)] = a.tet;
-  }
+  for_each_face_group(mesh.tets, mesh.vertices.size(), {}, [&](std::span<const FaceEntry> group) {
+    for (std::size_t i = 1; i < group.size(); ++i) {
+      const FaceEntry& a = group[i - 1];
+      const FaceEntry& b = group[i];
+      neighbours[a.tet][a.face] = static_cast<std::int32_t>(b.tet);
+      neighbours[b.tet][b.face] = static_cast<std::int32_t>(a.tet);
+    }
+  });
   return neighbours;
 }
 

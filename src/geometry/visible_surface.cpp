@@ -88,8 +88,7 @@ std::vector<Sample> samples_of(const TriMesh& surface, const Vec3& to_observer, 
   double owed = 0.5;  // samples
   std::uint64_t drawn = 0;
   for (const Triangle& triangle : surface.triangles) {
-    CurvedTriangle piece;
-    for (std::size_t c = 0; c < 3; ++c) piece.corners[c] = vertex(surface.vertices, triangle[c]);
+    CurvedTriangle piece{.corners = corners_of(surface.vertices, triangle), .normals = {}};
     const Vec3 cross = (piece.corners[1] - piece.corners[0]).cross(piece.corners[2] - piece.corners[0]);
     const double area = 0.5 * cross.norm();
     if (!(area > 0.0) || cross.dot(to_observer) < 2.0 * area * least_cosine) continue;

@@ -10,12 +10,6 @@ namespace incise::testing {
 
 using Corners = std::array<Vec3, 4>;
 
-inline Corners corners_of(const TetMesh& mesh, const Tet& tet) {
-  Corners corners;
-  for (std::size_t c = 0; c < 4; ++c) corners[c] = vertex(mesh.vertices, tet[c]);
-  return corners;
-}
-
 /// A block centred on x = y = 0 with its top at z = 0, of tets with edges of about 1.3 `cell_mm`, its inner vertices
 /// moved at random.
 inline TetMesh jittered_block(const Vec3& size, double cell_mm, std::uint64_t seed) {

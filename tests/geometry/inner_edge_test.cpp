@@ -151,7 +151,7 @@ TEST(InnerEdge, OfACarvedBlockIsTheInnerBorderOfItsKerf) {
   const TetMesh mesh = testing::jittered_block({36, 36, 5}, 0.62, 2);
   std::vector<std::uint8_t> is_live;
   for (const Tet& tet : mesh.tets) {
-    const Corners c = testing::corners_of(mesh, tet);
+    const Corners c = corners_of(mesh.vertices, tet);
     const double off = ((c[0] + c[1] + c[2] + c[3]) / 4.0).head<2>().norm() - 14.0;
     is_live.push_back(std::abs(off) <= 0.75 && c[0].z() + c[1].z() + c[2].z() + c[3].z() > -16.0 ? 0 : 1);
   }
@@ -175,7 +175,7 @@ TEST(InnerEdge, OfAKerfIsTheBorderOfWhatItLeavesInside) {
   KerfInput kerf;
   kerf.surface = boundary_surface(mesh);
   for (const Tet& tet : mesh.tets) {
-    const Corners c = testing::corners_of(mesh, tet);
+    const Corners c = corners_of(mesh.vertices, tet);
     if (std::abs(((c[0] + c[1] + c[2] + c[3]) / 4.0).head<2>().norm() - 14.0) <= 0.75) kerf.removed_tets.push_back(c);
   }
   const std::optional<Contour> edge = inner_edge_contour(kerf, {.layer_bottom_mm = 1.0, .min_coverage = 0.5});

@@ -14,7 +14,7 @@ KerfInput carved(const std::vector<Box3>& boxes) {
   KerfInput kerf;
   kerf.surface = boundary_surface(mesh);
   for (const Tet& tet : mesh.tets) {
-    const testing::Corners corners = testing::corners_of(mesh, tet);
+    const testing::Corners corners = corners_of(mesh.vertices, tet);
     const Vec3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     for (const Box3& box : boxes) {
       if (box.contains(middle)) kerf.removed_tets.push_back(corners);

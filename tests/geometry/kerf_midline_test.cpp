@@ -26,7 +26,7 @@ KerfInput carved(const TetMesh& mesh, const Goes& goes) {
   KerfInput input;
   input.surface = boundary_surface(mesh);
   for (const Tet& tet : mesh.tets) {
-    const Corners corners = testing::corners_of(mesh, tet);
+    const Corners corners = corners_of(mesh.vertices, tet);
     if (goes(corners)) input.removed_tets.push_back(corners);
   }
   return input;

@@ -48,8 +48,6 @@ class CloudSurface {
                              double depth_mm) const;
 
  private:
-  [[nodiscard]] std::vector<std::size_t> within(const Vec2& place, double radius_mm) const;
-
   ViewFrame frame_;
   CloudSurfaceSettings settings_;
   Points in_view_;

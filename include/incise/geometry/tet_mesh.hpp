@@ -54,6 +54,14 @@ inline void describe(Visitor& v, TriMesh& m) {
 
 [[nodiscard]] inline const Vec3& vertex(std::span<const Vec3> vertices, VertexId id) { return vertices[id.index()]; }
 
+/// Returns the positions of the corners of a tet or a triangle, mm.
+template <std::size_t N>
+[[nodiscard]] std::array<Vec3, N> corners_of(std::span<const Vec3> vertices, const std::array<VertexId, N>& ids) {
+  std::array<Vec3, N> corners;
+  for (std::size_t c = 0; c < N; ++c) corners[c] = vertex(vertices, ids[c]);
+  return corners;
+}
+
 /// Signed volume, mm³, of the tet with the given corners; positive for a valid tet.
 [[nodiscard]] double signed_volume(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
