@@ -85,16 +85,7 @@ class Tracer {
   }
 
   [[nodiscard]] std::size_t side(int i, int j, std::size_t k) const {
-    switch (k) {
-      case 0:
-        return edge(i, j, 0);
-      case 1:
-        return edge(i + 1, j, 1);
-      case 2:
-        return edge(i, j + 1, 0);
-      default:
-        return edge(i, j, 1);
-    }
+    return edge(i + (k == 1 ? 1 : 0), j + (k == 2 ? 1 : 0), k % 2);
   }
 
   void join_sides(int i, int j) {

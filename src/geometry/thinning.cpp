@@ -1,6 +1,7 @@
 #include <incise/geometry/thinning.hpp>
 
 #include <array>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -22,9 +23,7 @@ Neighbours neighbours(const Raster& raster, int i, int j) {
 }
 
 int count(const Neighbours& n) {
-  int sum = 0;
-  for (const int value : n) sum += value;
-  return sum;
+  return std::accumulate(n.begin(), n.end(), 0);
 }
 
 /// Number of changes from 0 to 1, once round.
@@ -73,34 +72,32 @@ bool strip(Raster& raster, bool is_first) {
   return has_changed;
 }
 
-/// Removes pixels one after the other, wherever `may_go` allows it, until nothing changes. Terminates, because every
-/// pass but the last removes a pixel.
-template <class MayGo>
-void remove_while(Raster& raster, const MayGo& may_go) {
-  bool has_changed = true;
-  while (has_changed) {
-    has_changed = false;
-    for (int j = 0; j < raster.height; ++j) {
-      for (int i = 0; i < raster.width; ++i) {
-        if (raster.at(i, j) == 0 || !may_go(neighbours(raster, i, j))) continue;
-        raster.at(i, j) = 0;
-        has_changed = true;
-      }
+/// Removes the corners of staircases, one after the other, which have neighbours at two sides; an end has one at most
+/// and stays. Returns whether a pixel was removed.
+bool cut_corners(Raster& raster) {
+  bool has_changed = false;
+  for (int j = 0; j < raster.height; ++j) {
+    for (int i = 0; i < raster.width; ++i) {
+      if (raster.at(i, j) == 0) continue;
+      const Neighbours n = neighbours(raster, i, j);
+      if (n[0] + n[2] + n[4] + n[6] < 2 || !is_simple(n)) continue;
+      raster.at(i, j) = 0;
+      has_changed = true;
     }
   }
+  return has_changed;
 }
 
 }  // namespace
 
 Raster thinned(Raster raster) {
   bool has_changed = true;
-  while (has_changed) {  // terminates: every pass but the last removes a pixel
+  while (has_changed) {  // terminates, as does the next loop: every pass but the last removes a pixel
     const bool first = strip(raster, true);
     const bool second = strip(raster, false);
     has_changed = first || second;
   }
-  // A corner of a staircase has neighbours at two sides; an end has one at most and stays.
-  remove_while(raster, [](const Neighbours& n) { return n[0] + n[2] + n[4] + n[6] > 1 && is_simple(n); });
+  while (cut_corners(raster)) continue;
   return raster;
 }
 

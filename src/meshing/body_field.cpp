@@ -1,6 +1,6 @@
 #include "meshing/body_field.hpp"
 
-#include "meshing/grid_checks.hpp"
+#include "meshing/voxel_grids.hpp"
 
 #include <incise/core/error.hpp>
 
@@ -19,29 +19,18 @@ constexpr float kRounding = 0.02F;   ///< recursive Gaussian filters exceed [0, 
 constexpr std::int32_t kNone = -1;
 
 /// Visits the voxels that share a face with a voxel, as offsets in the array.
-class Neighbours {
- public:
-  explicit Neighbours(const VolumeGrid& grid) : grid_(grid) {}
-
-  template <class Visit>
-  void for_each(std::size_t at, const Visit& visit) const {
-    const auto nx = static_cast<std::size_t>(grid_.size[0]);
-    const auto ny = static_cast<std::size_t>(grid_.size[1]);
-    const auto nz = static_cast<std::size_t>(grid_.size[2]);
-    const std::size_t i = at % nx;
-    const std::size_t j = at / nx % ny;
-    const std::size_t k = at / (nx * ny);
-    if (i > 0) visit(at - 1);
-    if (i + 1 < nx) visit(at + 1);
-    if (j > 0) visit(at - nx);
-    if (j + 1 < ny) visit(at + nx);
-    if (k > 0) visit(at - nx * ny);
-    if (k + 1 < nz) visit(at + nx * ny);
-  }
-
- private:
-  const VolumeGrid& grid_;
-};
+template <class Visit>
+void for_each_neighbour(const VolumeGrid& grid, std::size_t at, const Visit& visit) {
+  const auto [i, j, k] = grid.voxel_at(at);
+  const auto row = static_cast<std::size_t>(grid.size[0]);
+  const std::size_t slice = row * static_cast<std::size_t>(grid.size[1]);
+  if (i > 0) visit(at - 1);
+  if (i + 1 < grid.size[0]) visit(at + 1);
+  if (j > 0) visit(at - row);
+  if (j + 1 < grid.size[1]) visit(at + row);
+  if (k > 0) visit(at - slice);
+  if (k + 1 < grid.size[2]) visit(at + slice);
+}
 
 /// Component of each voxel, and the number of voxels of at least 0.5 in each component.
 struct Components {
@@ -51,10 +40,9 @@ struct Components {
 
 /// Spreads components over voxels of at least `threshold`, breadth first from the voxels already in `queue`.
 void spread(const GrayVolume& occupancy, float threshold, std::vector<std::size_t>& queue, Components& found) {
-  const Neighbours neighbours(occupancy.grid);
   for (std::size_t next = 0; next < queue.size(); ++next) {
     const std::size_t at = queue[next];
-    neighbours.for_each(at, [&](std::size_t other) {
+    for_each_neighbour(occupancy.grid, at, [&](std::size_t other) {
       if (found.of_voxel[other] != kNone || occupancy.voxels[other] < threshold) return;
       found.of_voxel[other] = found.of_voxel[at];
       queue.push_back(other);
@@ -87,53 +75,6 @@ void require_fractions(const GrayVolume& occupancy) {
   }
 }
 
-struct IndexRange {
-  std::array<int, 3> low{};
-  std::array<int, 3> size{};
-};
-
-/// Returns the box of one component in voxels, with a margin of one voxel, which may lie outside the volume.
-IndexRange range_of(const VolumeGrid& grid, const Components& components, std::int32_t wanted) {
-  std::array<int, 3> low = grid.size;
-  std::array<int, 3> high{-1, -1, -1};
-  std::size_t at = 0;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i, ++at) {
-        if (components.of_voxel[at] != wanted) continue;
-        low = {std::min(low[0], i), std::min(low[1], j), std::min(low[2], k)};
-        high = {std::max(high[0], i), std::max(high[1], j), std::max(high[2], k)};
-      }
-    }
-  }
-  IndexRange range;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    range.low[axis] = low[axis] - 1;
-    range.size[axis] = high[axis] - low[axis] + 3;
-  }
-  return range;
-}
-
-GrayVolume cut_out(const GrayVolume& occupancy, const Components& components, std::int32_t wanted) {
-  const IndexRange range = range_of(occupancy.grid, components, wanted);
-  GrayVolume result;
-  result.grid = occupancy.grid;
-  result.grid.size = range.size;
-  result.grid.origin_mm = occupancy.grid.world_from_index(Vec3(range.low[0], range.low[1], range.low[2]));
-  result.voxels.assign(result.grid.voxel_count(), 0.0F);
-  for (int k = 0; k < range.size[2]; ++k) {
-    for (int j = 0; j < range.size[1]; ++j) {
-      for (int i = 0; i < range.size[0]; ++i) {
-        const std::array<int, 3> from{i + range.low[0], j + range.low[1], k + range.low[2]};
-        if (!occupancy.grid.contains(from[0], from[1], from[2])) continue;
-        const std::size_t at = occupancy.grid.offset(from[0], from[1], from[2]);
-        if (components.of_voxel[at] == wanted) result.at(i, j, k) = std::min(occupancy.voxels[at], 1.0F);
-      }
-    }
-  }
-  return result;
-}
-
 double total(const GrayVolume& volume) {
   double sum = 0.0;
   for (const float value : volume.voxels) sum += static_cast<double>(value);
@@ -152,8 +93,11 @@ BodyField BodyField::largest_body(const GrayVolume& occupancy, BodyReport& repor
                                       *std::max_element(occupancy.voxels.begin(), occupancy.voxels.end())));
   }
   const auto largest = std::max_element(components.sizes.begin(), components.sizes.end()) - components.sizes.begin();
+  const auto is_in_body = [&](std::size_t at) { return components.of_voxel[at] == largest; };
   BodyField body;
-  body.volume_ = cut_out(occupancy, components, static_cast<std::int32_t>(largest));
+  body.volume_ = cut_out(occupancy.grid, box_of_voxels(occupancy.grid, is_in_body), 1, [&](std::size_t at) {
+    return is_in_body(at) ? std::min(occupancy.voxels[at], 1.0F) : 0.0F;
+  });
   report.volume_mm3 = total(body.volume_);
   report.dropped_bodies = components.sizes.size() - 1;
   report.dropped_volume_mm3 = std::max(total(occupancy) - report.volume_mm3, 0.0);

@@ -93,11 +93,9 @@ DelaunayMesher::DelaunayMesher(DelaunayDomain domain, const DelaunayCriteria& cr
 }
 DelaunayMesher::~DelaunayMesher() = default;
 DelaunayMesher::DelaunayMesher(DelaunayMesher&&) noexcept = default;
-DelaunayMesher& DelaunayMesher::operator=(DelaunayMesher&&) noexcept = default;
 
 RefineEnd DelaunayMesher::refine() {
   using namespace CGAL::parameters;
-  quiet_checks();
   CGAL::get_default_random() = CGAL::Random(0);  // a second run in the same process starts like the first
   State& s = *state_;
   std::atomic<bool> stop = false;
@@ -122,14 +120,12 @@ RefineEnd DelaunayMesher::refine() {
 }
 
 bool DelaunayMesher::perturb(double sliver_bound_deg) {
-  quiet_checks();
   // No time limit: the result must not depend on the machine's speed. The search ends by itself.
   return CGAL::perturb_mesh_3(state_->complex, state_->domain, CGAL::parameters::time_limit = 0,
                               CGAL::parameters::sliver_bound = sliver_bound_deg) == CGAL::BOUND_REACHED;
 }
 
 bool DelaunayMesher::exude(double sliver_bound_deg) {
-  quiet_checks();
   return CGAL::exude_mesh_3(state_->complex, CGAL::parameters::time_limit = 0,
                             CGAL::parameters::sliver_bound = sliver_bound_deg) == CGAL::BOUND_REACHED;
 }

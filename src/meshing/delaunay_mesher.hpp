@@ -38,7 +38,6 @@ class DelaunayMesher {
   DelaunayMesher(DelaunayDomain domain, const DelaunayCriteria& criteria);
   ~DelaunayMesher();
   DelaunayMesher(DelaunayMesher&&) noexcept;
-  DelaunayMesher& operator=(DelaunayMesher&&) noexcept;
 
   /// Refines surface and inside by Delaunay refinement until every criterion is met.
   [[nodiscard]] RefineEnd refine();

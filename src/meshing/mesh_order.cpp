@@ -10,26 +10,6 @@
 namespace incise::meshing_detail {
 namespace {
 
-using Face = std::pair<Triangle, std::size_t>;  ///< sorted corners, tet
-
-std::vector<Face> sorted_faces(const TetMesh& mesh) {
-  std::vector<Face> faces;
-  faces.reserve(4 * mesh.tets.size());
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    Tet corners = mesh.tets[t];
-    std::sort(corners.begin(), corners.end());
-    for (std::size_t left_out = 0; left_out < 4; ++left_out) {
-      Triangle face;
-      for (std::size_t c = 0, f = 0; c < 4; ++c) {
-        if (c != left_out) face[f++] = corners[c];
-      }
-      faces.emplace_back(face, t);
-    }
-  }
-  std::sort(faces.begin(), faces.end());
-  return faces;
-}
-
 /// Inserts two zeros before each of the 21 lowest bits.
 std::uint64_t spread_bits(std::uint64_t v) {
   v &= 0x1fffff;
@@ -80,9 +60,11 @@ std::vector<std::size_t> ordered_vertices(const TetMesh& mesh) {
 TetMesh largest_component(TetMesh mesh, std::size_t& dropped) {
   dropped = 0;
   DisjointSets sets(mesh.tets.size());
-  const std::vector<Face> faces = sorted_faces(mesh);
-  for (std::size_t f = 1; f < faces.size(); ++f) {
-    if (faces[f].first == faces[f - 1].first) sets.join(faces[f].second, faces[f - 1].second);
+  const std::vector<std::array<std::int32_t, 4>> neighbours = face_neighbours(mesh);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    for (const std::int32_t other : neighbours[t]) {
+      if (other >= 0) sets.join(t, static_cast<std::size_t>(other));
+    }
   }
   std::vector<std::size_t> size(mesh.tets.size(), 0);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) ++size[sets.root(t)];
@@ -109,8 +91,8 @@ TetMesh in_canonical_order(const TetMesh& mesh) {
     Tet tet;
     for (std::size_t c = 0; c < 4; ++c) tet[c] = new_id[old[c].index()];
     std::sort(tet.begin(), tet.end());
-    const auto at = [&](std::size_t c) -> const Vec3& { return result.vertices[tet[c].index()]; };
-    if (signed_volume(at(0), at(1), at(2), at(3)) < 0.0) std::swap(tet[2], tet[3]);
+    const auto [p, q, r, s] = corners_of(result.vertices, tet);
+    if (signed_volume(p, q, r, s) < 0.0) std::swap(tet[2], tet[3]);
     result.tets.push_back(tet);
   }
   std::sort(result.tets.begin(), result.tets.end());

@@ -3,13 +3,13 @@
 #include "meshing/mesh_order.hpp"
 #include "meshing/sampled_sizing.hpp"
 #include "meshing/volume_by_iso.hpp"
+#include "meshing/voxel_grids.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/meshing/mesher.hpp>
 #include <incise/meshing/occupancy.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
@@ -34,12 +34,6 @@ constexpr double kTetsPerCube = 10.3;
 constexpr double kCellSizeOfCalibration = 0.75;
 constexpr double kLeftAfterPerturbation = 0.99;  ///< perturbation and exudation lose about 1 % of the tets
 constexpr double kEnoughOfTolerance = 0.5;       ///< refinement stops correcting within half of the tolerance
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Returns the number of vertices at which refinement gives up: three times as many as max_tets usually has.
 std::size_t most_vertices(const MeshingSettings& settings) {
@@ -90,11 +84,10 @@ class Meshing {
     throw_if_cancelled(monitor_, "meshing");
     progress_ = std::max(progress_, fraction);  // phases may repeat
     monitor_.progress("meshing", progress_);
-    const auto start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     work();
-    const double wall_s = seconds_since(start);
-    const auto known = std::find_if(result_.phases.begin(), result_.phases.end(),
-                                    [&](const MeshingPhase& phase) { return phase.name == name; });
+    const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto known = std::ranges::find(result_.phases, name, &MeshingPhase::name);
     if (known == result_.phases.end()) {
       result_.phases.push_back({name, wall_s});
     } else {
@@ -263,13 +256,9 @@ class Meshing {
 
 template <class Value, class IsTissue>
 double longest_side_mm(const Volume<Value>& volume, const IsTissue& is_tissue) {
-  const auto& size = volume.grid.size;
   INCISE_REQUIRE(volume.voxels.size() == volume.grid.voxel_count(), "expected one value per voxel");
-  Eigen::AlignedBox3i box;
-  for (int k = 0; k < size[2]; ++k)
-    for (int j = 0; j < size[1]; ++j)
-      for (int i = 0; i < size[0]; ++i)
-        if (is_tissue(volume.at(i, j, k))) box.extend(Eigen::Vector3i(i, j, k));
+  const Eigen::AlignedBox3i box =
+      meshing_detail::box_of_voxels(volume.grid, [&](std::size_t at) { return is_tissue(volume.voxels[at]); });
   if (box.isEmpty()) return 0.0;
   return (box.sizes() + Eigen::Vector3i::Ones()).cast<double>().cwiseProduct(volume.grid.spacing_mm).maxCoeff();
 }

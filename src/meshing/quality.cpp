@@ -16,14 +16,9 @@ namespace {
 
 using Edge = std::pair<VertexId, VertexId>;
 
-constexpr std::array<std::array<int, 2>, 6> kTetEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
+constexpr std::array<std::array<std::size_t, 2>, 6> kTetEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 using Corners = std::array<Vec3, 4>;
-
-Corners corners_of(const TetMesh& mesh, const Tet& tet) {
-  return {vertex(mesh.vertices, tet[0]), vertex(mesh.vertices, tet[1]), vertex(mesh.vertices, tet[2]),
-          vertex(mesh.vertices, tet[3])};
-}
 
 /// Returns the normals of the faces opposite each corner, of length twice the face's area; outward for a positive tet.
 std::array<Vec3, 4> area_normals(const Corners& c) {
@@ -66,8 +61,7 @@ std::vector<Edge> edges_of(const TetMesh& mesh) {
   std::vector<Edge> edges;
   edges.reserve(6 * mesh.tets.size());
   for (const Tet& tet : mesh.tets) {
-    for (const auto& [a, b] : kTetEdges)
-      edges.push_back(std::minmax(tet[static_cast<std::size_t>(a)], tet[static_cast<std::size_t>(b)]));
+    for (const auto& [a, b] : kTetEdges) edges.push_back(std::minmax(tet[a], tet[b]));
   }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -97,7 +91,7 @@ EdgeStatistics statistics_of(const TetMesh& mesh, const std::function<bool(const
 
 void add_angles(MeshQuality& quality, const std::array<Vec3, 4>& normals) {
   for (const auto& [a, b] : kTetEdges) {
-    const double angle = dihedral_deg(normals[static_cast<std::size_t>(a)], normals[static_cast<std::size_t>(b)]);
+    const double angle = dihedral_deg(normals[a], normals[b]);
     quality.min_dihedral_deg = std::min(quality.min_dihedral_deg, angle);
     quality.max_dihedral_deg = std::max(quality.max_dihedral_deg, angle);
     const auto bin = static_cast<std::size_t>(angle / MeshQuality::kBinWidthDeg);
@@ -119,8 +113,8 @@ MeshQuality quality_of(const TetMesh& mesh) {
   quality.smallest_tet_mm3 = std::numeric_limits<double>::infinity();
   double ratio_sum = 0.0;
   for (const Tet& tet : mesh.tets) {
-    const Corners c = corners_of(mesh, tet);
-    const double volume = (c[1] - c[0]).cross(c[2] - c[0]).dot(c[3] - c[0]) / 6.0;
+    const Corners c = corners_of(mesh.vertices, tet);
+    const double volume = signed_volume(c[0], c[1], c[2], c[3]);
     const std::array<Vec3, 4> normals = area_normals(c);
     const double ratio = radius_ratio(c, normals, volume);
     add_angles(quality, normals);

@@ -3,7 +3,6 @@
 #include <incise/meshing/sizing_field.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

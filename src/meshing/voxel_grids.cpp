@@ -1,4 +1,4 @@
-#include "meshing/grid_checks.hpp"
+#include "meshing/voxel_grids.hpp"
 
 #include <incise/core/error.hpp>
 
