@@ -66,29 +66,24 @@ class FebioInput {
     add_comment(root, "Units: mm, kg, s; so stress in kPa, force in mN, density in kg/mm3. Frame LPS.");
     add_comment(root,
                 "Run: febio4 -i FILE. Displacements of every node go to displacement.csv. Nodes and elements are the "
-                "vertices and tets "
-                "of the incise case in its order, numbered from 1.");
+                "vertices and tets of the incise case in its order, numbered from 1.");
     if (model_.material.model == MaterialModel::Corotational) {
       add_comment(root,
                   "DIFFERS: FEBio has no corotational law. 'isotropic elastic' (Saint Venant and Kirchhoff: second "
-                  "Piola-Kirchhoff stress "
-                  "linear in Green-Lagrange strain) is the nearest: equal at small strain and for any rotation. At a "
-                  "stretch s along one "
-                  "axis it gives a stress of E (s^2 - 1) s / 2 per rest area where incise gives E (s - 1), both for nu "
-                  "0: 32 % more at "
-                  "s = 1.2, and it softens in compression.");
+                  "Piola-Kirchhoff stress linear in Green-Lagrange strain) is the nearest: equal at small strain and "
+                  "for any rotation. At a stretch s along one axis it gives a stress of E (s^2 - 1) s / 2 per rest "
+                  "area where incise gives E (s - 1), both for nu 0: 32 % more at s = 1.2, and it softens in "
+                  "compression.");
     } else {
       add_comment(root,
                   "DIFFERS: FEBio's 'neo-Hookean' has mu/2 (I1 - 3) - mu ln J + lambda/2 (ln J)^2; incise's stable "
-                  "Neo-Hookean (Smith, de "
-                  "Goes and Kim 2018) is equal at small strain and close while J stays near 1, and only it is "
-                  "defined for inverted tets.");
+                  "Neo-Hookean (Smith, de Goes and Kim 2018) is equal at small strain and close while J stays near 1, "
+                  "and only it is defined for inverted tets.");
     }
     if (model_.material.volume == VolumeTreatment::Averaged) {
       add_comment(root,
                   "DIFFERS: incise averages the change of volume about each vertex (material.volume: averaged). These "
-                  "are standard "
-                  "tet4 elements, which lock as Poisson's ratio nears 0.5.");
+                  "are standard tet4 elements, which lock as Poisson's ratio nears 0.5.");
     }
     if (!model_.material.prony.empty() || model_.material.kelvin_voigt_time_s > 0.0) {
       add_comment(root, "The case's viscosity is left out: equilibrium is its long-time limit.");
@@ -114,7 +109,7 @@ class FebioInput {
   void add_nodes(const std::string& name, const Points& points) {
     pugi::xml_node nodes = with(mesh_.append_child("Nodes"), {{"name", name}});
     for (const Vec3& p : points) {
-      add_text(nodes, "node", text_of(p, ",")).append_attribute("id") = static_cast<unsigned long long>(++node_count_);
+      with(add_text(nodes, "node", text_of(p, ",")), {{"id", fmt::format("{}", ++node_count_)}});
     }
   }
 
@@ -123,13 +118,13 @@ class FebioInput {
   }
 
   void add_element(pugi::xml_node elements, const std::string& corners) {
-    add_text(elements, "elem", corners).append_attribute("id") = static_cast<unsigned long long>(++element_count_);
+    with(add_text(elements, "elem", corners), {{"id", fmt::format("{}", ++element_count_)}});
   }
 
   void add_surface(const std::string& name, const std::vector<std::string>& triangles) {
     pugi::xml_node surface = with(mesh_.append_child("Surface"), {{"name", name}});
     for (std::size_t i = 0; i < triangles.size(); ++i) {
-      add_text(surface, "tri3", triangles[i]).append_attribute("id") = static_cast<unsigned long long>(i + 1);
+      with(add_text(surface, "tri3", triangles[i]), {{"id", fmt::format("{}", i + 1)}});
     }
   }
 
@@ -172,8 +167,7 @@ class FebioInput {
     with(add_text(material, name, map), {{"type", "map"}});
     pugi::xml_node data = with(data_.append_child("ElementData"), {{"name", map}, {"elem_set", kTissue}});
     for (std::size_t i = 0; i < values.size(); ++i) {
-      add_text(data, "e", fmt::format("{}", values[i])).append_attribute("lid") =
-          static_cast<unsigned long long>(i + 1);
+      with(add_text(data, "e", fmt::format("{}", values[i])), {{"lid", fmt::format("{}", i + 1)}});
     }
   }
 
@@ -209,8 +203,7 @@ class FebioInput {
     pugi::xml_node data =
         with(data_.append_child("NodeData"), {{"name", name + "_mn"}, {"node_set", name}, {"data_type", "vec3"}});
     for (std::size_t i = 0; i < loads.size(); ++i) {
-      add_text(data, "node", text_of(loads[i].force_mn, ",")).append_attribute("lid") =
-          static_cast<unsigned long long>(i + 1);
+      with(add_text(data, "node", text_of(loads[i].force_mn, ",")), {{"lid", fmt::format("{}", i + 1)}});
     }
     pugi::xml_node node =
         with(loads_.append_child("nodal_load"), {{"name", name}, {"type", "nodal_force"}, {"node_set", name}});
@@ -237,15 +230,12 @@ class FebioInput {
   }
 
   void add_supports() {
-    bool has_skin = false;
+    if (model_.supports.empty()) return;
+    std::vector<std::string> triangles;
+    for (const BoundaryFace& face : skin_) triangles.push_back(triangle_text(face.corners));
+    add_surface("skin", triangles);
     for (const SupportPlane& support : model_.supports) {
       const auto& constraint = std::get<SupportConstraint>(model_.constraints[support.constraint]);
-      if (!has_skin) {
-        std::vector<std::string> triangles;
-        for (const BoundaryFace& face : skin_) triangles.push_back(triangle_text(face.corners));
-        add_surface("skin", triangles);
-        has_skin = true;
-      }
       add_support(fmt::format("constraint_{}_support", support.constraint),
                   constraint.holder ? constraint.holder->surface : plate_of(support));
     }

@@ -73,8 +73,7 @@ class SofaScene {
     if (model_.material.volume == VolumeTreatment::Averaged) {
       add_comment(document,
                   "DIFFERS: incise averages the change of volume about each vertex (material.volume: averaged). SOFA "
-                  "has standard "
-                  "tets only, which lock as Poisson's ratio nears 0.5.");
+                  "has standard tets only, which lock as Poisson's ratio nears 0.5.");
     }
     if (!model_.material.prony.empty() || model_.material.kelvin_voigt_time_s > 0.0) {
       add_comment(document, "The case's viscosity is left out: equilibrium is its long-time limit.");
@@ -115,8 +114,7 @@ class SofaScene {
       }
       add_comment(tissue,
                   "Stable Neo-Hookean as SOFA has it: without the logarithmic term of Smith, de Goes and Kim (2018), "
-                  "the same at "
-                  "small strain. Parameters: mu, lambda.");
+                  "the same at small strain. Parameters: mu, lambda.");
       with(add(tissue, "TetrahedronHyperelasticityFEMForceField", "Sofa.Component.SolidMechanics.FEM.HyperElastic"),
            {{"materialName", "StableNeoHookean"},
             {"ParameterSet", fmt::format("{} {}", model_.lame.front().mu_kpa, model_.lame.front().lambda_kpa)}});
@@ -124,8 +122,8 @@ class SofaScene {
     }
     add_comment(tissue,
                 "The same law as incise: linear elasticity about the polar rotation of each tet's deformation "
-                "gradient. SOFA's other "
-                "corotational force fields take their rotation from edges of the tet and differ by up to millimetres.");
+                "gradient. SOFA's other corotational force fields take their rotation from edges of the tet and "
+                "differ by up to millimetres.");
     with(add(tissue, "FastTetrahedralCorotationalForceField", "Sofa.Component.SolidMechanics.FEM.Elastic"),
          {{"method", "polar"},
           {"topology", "@mesh"},
@@ -175,8 +173,7 @@ class SofaScene {
                       fmt::format("'{}'", support->holder->name), "a plane for an export as sofa",
                       "SOFA handles contact with a surface by another method, with its own friction and margins");
     }
-    const SupportPlane& plane = *std::find_if(model_.supports.begin(), model_.supports.end(),
-                                              [index](const SupportPlane& s) { return s.constraint == index; });
+    const SupportPlane& plane = *std::ranges::find(model_.supports, index, &SupportPlane::constraint);
     const double sum = std::accumulate(plane.stiffness.begin(), plane.stiffness.end(), 0.0);
     add_comment(
         tissue,

@@ -2,7 +2,6 @@
 
 #include <incise/core/error.hpp>
 #include <incise/interchange/interchange.hpp>
-#include <incise/io/atomic_file.hpp>
 
 #include <fmt/format.h>
 
@@ -45,10 +44,8 @@ Stiffness stiffness_of(const TissueModel& model) {
     return l.lambda_kpa == model.lame.front().lambda_kpa && l.mu_kpa == model.lame.front().mu_kpa;
   };
   const LameParameters common = lame_parameters(model.material.youngs_modulus_kpa, model.material.poissons_ratio);
-  const bool is_material =
-      common.lambda_kpa == model.lame.front().lambda_kpa && common.mu_kpa == model.lame.front().mu_kpa;
-  const bool is_uniform = std::all_of(model.lame.begin(), model.lame.end(), is_like_first);
-  if (is_uniform && is_material) return {{model.material.youngs_modulus_kpa}, {model.material.poissons_ratio}};
+  const bool is_uniform = std::ranges::all_of(model.lame, is_like_first);
+  if (is_uniform && is_like_first(common)) return {{model.material.youngs_modulus_kpa}, {model.material.poissons_ratio}};
   Stiffness stiffness;
   for (const LameParameters& l : model.lame) {
     stiffness.youngs_modulus_kpa.push_back(l.mu_kpa * (3.0 * l.lambda_kpa + 2.0 * l.mu_kpa) /
@@ -99,16 +96,6 @@ std::string xml_text(const pugi::xml_document& document) {
   std::ostringstream text;
   document.save(text, "  ");
   return text.str();
-}
-
-void write_sofa_scene(const std::filesystem::path& path, const InterchangeCase& specimen) {
-  const std::string text = sofa_scene_xml(specimen);
-  write_atomically(path, text);
-}
-
-void write_febio_input(const std::filesystem::path& path, const InterchangeCase& specimen) {
-  const std::string text = febio_input_xml(specimen);
-  write_atomically(path, text);
 }
 
 }  // namespace incise

@@ -37,7 +37,7 @@ StepResult write_for_solver(const CaseFile& file, InterchangeFormat format, cons
     const InterchangeCase specimen{
         *model, file.settings.gravity_mm_s2, file.settings.title,
         fmt::format("Written by incise {} ({}) from {}", version(), source_commit(), file.file.string())};
-    (is_sofa ? write_sofa_scene : write_febio_input)(target.path() / name, specimen);
+    write_atomically(target.path() / name, is_sofa ? sofa_scene_xml(specimen) : febio_input_xml(specimen));
   } catch (const CaseError& error) {
     throw error.in_file(file.file.string());
   }

@@ -3,7 +3,6 @@
 #include <incise/geometry/types.hpp>
 #include <incise/mechanics/tissue.hpp>
 
-#include <filesystem>
 #include <string>
 
 namespace incise {
@@ -29,10 +28,5 @@ struct InterchangeCase {
 /// surface, is a rigid shell with sliding contact; its nodes and triangles follow those of the tissue. Refused: fibres,
 /// stiffening.
 [[nodiscard]] std::string febio_input_xml(const InterchangeCase& specimen);
-
-/// Writes the scene or the input to a file, completely or not at all. @throws as above; DataError if the file cannot be
-/// written.
-void write_sofa_scene(const std::filesystem::path& path, const InterchangeCase& specimen);
-void write_febio_input(const std::filesystem::path& path, const InterchangeCase& specimen);
 
 }  // namespace incise
