@@ -79,8 +79,7 @@ TetMesh eighth_of_a_sphere(double inner_radius_mm, int n) {
 
 void add_pressure_outwards(TissueModel& model, double at_mm, double pressure_kpa) {
   for (const BoundaryFace& face : boundary_faces(model.mesh)) {
-    std::array<Vec3, 3> p;
-    for (std::size_t c = 0; c < 3; ++c) p[c] = vertex(model.mesh.vertices, face.corners[c]);
+    const std::array<Vec3, 3> p = corners_of(model.mesh.vertices, face.corners);
     const bool is_there =
         std::all_of(p.begin(), p.end(), [&](const Vec3& x) { return std::abs(x.norm() - at_mm) < kPlaneHalfWidth; });
     if (!is_there) continue;

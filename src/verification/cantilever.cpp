@@ -4,8 +4,6 @@
 #include "verification/closed_forms.hpp"
 #include "verification/convergence.hpp"
 
-#include <fmt/format.h>
-
 namespace incise {
 namespace {
 
@@ -19,8 +17,7 @@ const std::vector<int> kCellsOverHeight{4, 8, 16};  // over the height
 /// Returns the tip displacement with cubic cells, n over the height. At ν = 0 nothing changes across the width, so one
 /// layer of cells between planes of symmetry represents the whole beam.
 double computed_tip_mm(const CheckContext& context, int n) {
-  Material material;
-  material.poissons_ratio = 0.0;
+  const Material material{.poissons_ratio = 0.0};
   const double width = kBeamHeight / n;
   const TissueModel model =
       make_tissue_model(make_block(Vec3(kBeamLength, width, kBeamHeight), {10 * n, 1, n}), material,
@@ -33,34 +30,27 @@ double computed_tip_mm(const CheckContext& context, int n) {
 struct Refinement {
   double expected = 0.0;
   std::vector<double> tips;
-  [[nodiscard]] double error(std::size_t i) const { return std::abs(1.0 - tips[i] / expected); }
+  CheckCurve errors{"tip displacement", {}, {}, false};
 };
 
 Refinement refine(const CheckContext& context) {
   Refinement result;
   result.expected = beam_tip_mm(kBeamLength, kBeamHeight, Material{}.youngs_modulus_kpa, kEndTraction * kBeamHeight);
-  for (const int n : kCellsOverHeight) result.tips.push_back(computed_tip_mm(context, n));
+  for (const int n : kCellsOverHeight) {
+    result.tips.push_back(computed_tip_mm(context, n));
+    result.errors.add(n, std::abs(1.0 - result.tips.back() / result.expected));
+  }
   return result;
 }
 
-void finish(VerificationCheck& check, const Refinement& refinement) {
-  CheckCurve marks{"tip displacement", {}, {}, false};
-  CheckCurve slope{"second order", {}, {}, true};
-  for (std::size_t i = 0; i < kCellsOverHeight.size(); ++i) {
-    marks.x.push_back(kCellsOverHeight[i]);
-    marks.y.push_back(refinement.error(i));
-    slope.x.push_back(kCellsOverHeight[i]);
-    slope.y.push_back(refinement.error(0) *
-                      std::pow(static_cast<double>(kCellsOverHeight[0]) / kCellsOverHeight[i], 2));
-    check.note +=
-        fmt::format("{}{} cells: {:.2f} % off", i > 0 ? ", " : "", kCellsOverHeight[i], 100.0 * refinement.error(i));
-  }
+void finish(VerificationCheck& check, const CheckCurve& errors) {
+  check.note = errors_text(errors, "cells");
   check.plot = {"Cantilever against Timoshenko's beam",
                 "cells over the height",
                 "relative error of the tip",
                 true,
                 true,
-                {slope, marks}};
+                {line_of_order(errors, 2.0, "second order"), errors}};
 }
 
 constexpr const char* kBeamSource = "Timoshenko's beam: F L³ / 3EI + F L / (5/6 G A)";
@@ -72,8 +62,8 @@ VerificationCheck cantilever_rate(const CheckContext& context) {
       described("Cantilever, ν = 0: observed order of convergence of the tip displacement",
                 std::string(kBeamSource) + "; order 2 of linear tets", "-", 2.0, kTipRateTolerance);
   const Refinement refinement = refine(context);
-  check.found = observed_rate(refinement.error(1), refinement.error(2));
-  finish(check, refinement);
+  check.found = observed_rate(refinement.errors.y[1], refinement.errors.y[2]);
+  finish(check, refinement.errors);
   return check;
 }
 
@@ -82,7 +72,7 @@ VerificationCheck cantilever_tip(const CheckContext& context) {
   VerificationCheck check = described("Cantilever, ν = 0: tip displacement, extrapolated at second order", kBeamSource,
                                       "mm", refinement.expected, kTipTolerance * std::abs(refinement.expected));
   check.found = second_order_limit(refinement.tips[1], refinement.tips[2]);
-  finish(check, refinement);
+  finish(check, refinement.errors);
   return check;
 }
 

@@ -12,9 +12,8 @@ constexpr int kMaxNewtonIterations = 200;  // large rotations take many load ste
 
 StaticResult solved(const CheckContext& context, const TissueModel& model, const TissueState* start,
                     double relative_tolerance) {
-  StaticSettings settings;
-  settings.relative_tolerance = relative_tolerance;
-  settings.max_newton_iterations = kMaxNewtonIterations;
+  const StaticSettings settings{.relative_tolerance = relative_tolerance,
+                                .max_newton_iterations = kMaxNewtonIterations};
   StaticResult result = solve_static(model, settings, context.workers, context.monitor, start);
   if (result.outcome == Outcome::Cancelled) throw Cancelled("verifying: stopped on request");
   if (result.outcome != Outcome::Success) {
@@ -48,13 +47,25 @@ std::string law_text(const Material& material) {
 }
 
 VerificationCheck described(std::string what, std::string source, std::string unit, double expected, double tolerance) {
-  VerificationCheck check;
-  check.what = std::move(what);
-  check.source = std::move(source);
-  check.unit = std::move(unit);
-  check.expected = expected;
-  check.tolerance = tolerance;
-  return check;
+  return {.what = std::move(what),
+          .source = std::move(source),
+          .unit = std::move(unit),
+          .expected = expected,
+          .tolerance = tolerance};
+}
+
+CheckCurve line_of_order(const CheckCurve& errors, double order, std::string name) {
+  CheckCurve line{std::move(name), {}, {}, true};
+  for (const double n : errors.x) line.add(n, errors.y[0] * std::pow(errors.x[0] / n, order));
+  return line;
+}
+
+std::string errors_text(const CheckCurve& errors, const char* cells) {
+  std::string text;
+  for (std::size_t i = 0; i < errors.x.size(); ++i) {
+    text += fmt::format("{}{:.0f} {}: {:.2f} % off", i > 0 ? ", " : "", errors.x[i], cells, 100.0 * errors.y[i]);
+  }
+  return text;
 }
 
 }  // namespace incise

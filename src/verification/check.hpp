@@ -42,6 +42,12 @@ void require_small_error(double relative_error, double bound);
 [[nodiscard]] VerificationCheck described(std::string what, std::string source, std::string unit, double expected,
                                           double tolerance);
 
+/// Returns the line y = y_0 (x_0 / x)^order through the first point of a curve: errors that shrink with this order.
+[[nodiscard]] CheckCurve line_of_order(const CheckCurve& errors, double order, std::string name);
+
+/// Returns "4 cells: 1.23 % off, 8 cells: …" for relative errors on meshes of x cells.
+[[nodiscard]] std::string errors_text(const CheckCurve& errors, const char* cells);
+
 // The checks, one file each.
 VerificationCheck patch_test(const CheckContext& context, const Material& material);
 VerificationCheck uniaxial_stretch(const CheckContext& context, const Material& material);

@@ -33,17 +33,15 @@ double panel_tip_of_tets_mm(const CheckContext& context, const Material& materia
 }
 
 double panel_reference_tip_mm(const Material& material) {
-  PanelProblem problem;
-  problem.youngs_modulus_kpa = material.youngs_modulus_kpa;
-  problem.poissons_ratio = material.poissons_ratio;
-  problem.traction_kpa = kPanelTraction;
+  const PanelProblem problem{.youngs_modulus_kpa = material.youngs_modulus_kpa,
+                             .poissons_ratio = material.poissons_ratio,
+                             .traction_kpa = kPanelTraction};
   return extrapolated(panel_tip_mm(problem, kReferenceCells / 4), panel_tip_mm(problem, kReferenceCells / 2),
                       panel_tip_mm(problem, kReferenceCells));
 }
 
 VerificationCheck cooks_membrane_rate(const CheckContext& context) {
-  Material material;
-  material.poissons_ratio = 0.3;
+  const Material material{.poissons_ratio = 0.3};
   // The upper left corner: 90 degrees plus the slope of the upper edge. Its energy converges with twice the exponent.
   const double angle = 0.5 * units::kPi + std::atan(16.0 / 48.0);
   const double exponent = corner_exponent(angle, material.poissons_ratio);
@@ -55,15 +53,13 @@ VerificationCheck cooks_membrane_rate(const CheckContext& context) {
   check.criterion = Criterion::AtLeast;
   const double expected = panel_reference_tip_mm(material);
   CheckCurve marks{"tip displacement", {}, {}, false};
-  CheckCurve slope{fmt::format("order {:.2f}, the least to be seen", 2.0 * exponent), {}, {}, true};
   for (const int n : kPanelCells) {
-    marks.x.push_back(n);
-    marks.y.push_back(std::abs(1.0 - panel_tip_of_tets_mm(context, material, n) / expected));
-    slope.x.push_back(n);
-    slope.y.push_back(marks.y[0] * std::pow(static_cast<double>(kPanelCells[0]) / n, 2.0 * exponent));
-    check.note += fmt::format("{}{} cells: {:.2f} % off", n == kPanelCells[0] ? "" : ", ", n, 100.0 * marks.y.back());
+    marks.add(n, std::abs(1.0 - panel_tip_of_tets_mm(context, material, n) / expected));
   }
+  check.note = errors_text(marks, "cells");
   check.found = observed_rate(marks.y[marks.y.size() - 2], marks.y.back());
+  const std::string name = fmt::format("order {:.2f}, the least to be seen", 2.0 * exponent);
+  const CheckCurve slope = line_of_order(marks, 2.0 * exponent, name);
   check.plot = {"Cook's membrane", "cells each way", "relative error of the tip", true, true, {slope, marks}};
   return check;
 }

@@ -54,8 +54,7 @@ TissueState bent_as_the_beam(const TissueModel& model, int n) {
 /// At ν = 0 nothing changes across the width: one layer of cells represents the whole beam. Cells are 12.5/8 times as
 /// long as high.
 Bent bend(const CheckContext& context, int n) {
-  Material material;
-  material.poissons_ratio = 0.0;
+  const Material material{.poissons_ratio = 0.0};
   const double width = kStripHeight / n;
   const TissueModel model = make_tissue_model(
       make_block(Vec3(kStripLength, width, kStripHeight), {kCellsAlongPerCell * n, 1, n}), material,
@@ -68,8 +67,7 @@ Bent bend(const CheckContext& context, int n) {
   for (int i = 0; i <= 16; ++i) {
     const Region section = plane_across(0, kStripLength * i / 16.0);
     const Vec3 moved = mean_displacement(model, state, section) / kStripLength;
-    bent.line.x.push_back(i / 16.0 + moved[0]);
-    bent.line.y.push_back(moved[2]);
+    bent.line.add(i / 16.0 + moved[0], moved[2]);
   }
   return bent;
 }
@@ -84,8 +82,7 @@ VerificationCheck elastica_tip(const CheckContext& context) {
       "of the length", -line.back()[1] / kStripLength, kDropTolerance);
   CheckCurve reference{"elastica", {}, {}, true};
   for (std::size_t i = 0; i < line.size(); i += 8) {
-    reference.x.push_back(line[i][0] / kStripLength);
-    reference.y.push_back(line[i][1] / kStripLength);
+    reference.add(line[i][0] / kStripLength, line[i][1] / kStripLength);
   }
   check.plot = {"Beam bent far", "x / length", "z / length", false, false, {reference}};
   std::vector<double> drops;

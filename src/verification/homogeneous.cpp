@@ -28,10 +28,7 @@ double distance_from(const TissueModel& model, const TissueState& state, const V
 
 CheckCurve closed_form_curve(const std::function<double(double)>& stress) {
   CheckCurve curve{"closed form", {}, {}, true};
-  for (int i = 0; i <= 50; ++i) {
-    curve.x.push_back(0.01 * i);
-    curve.y.push_back(stress(curve.x.back()));
-  }
+  for (int i = 0; i <= 50; ++i) curve.add(0.01 * i, stress(0.01 * i));
   return curve;
 }
 
@@ -59,8 +56,7 @@ VerificationCheck pulled(const CheckContext& context, const Material& material, 
     const TissueModel model = make_tissue_model(mesh, material, constraints);
     state = solved(context, model, state.positions.empty() ? nullptr : &state).state;
     check.found = std::max(check.found, distance_from(model, state, stretches));
-    marks.x.push_back(mean_displacement(model, state, plane_across(0, kBarSize[0]))[0] / kBarSize[0]);
-    marks.y.push_back(stress);
+    marks.add(mean_displacement(model, state, plane_across(0, kBarSize[0]))[0] / kBarSize[0], stress);
   }
   const CheckCurve line =
       closed_form_curve([&](double e) { return principal_stress_kpa(material, stretches_at(e))[0]; });
@@ -101,8 +97,7 @@ VerificationCheck simple_shear(const CheckContext& context, const Material& mate
     prescribe_boundary(model, f);
     const Mat3 stress = mean_stress_kpa(context, model, solved(context, model, nullptr, 1e-12).state);
     check.found = std::max(check.found, std::abs(stress(0, 1) - simple_shear_stress_kpa(material, shear)) / mu);
-    marks.x.push_back(shear);
-    marks.y.push_back(stress(0, 1));
+    marks.add(shear, stress(0, 1));
   }
   const CheckCurve line = closed_form_curve([&](double g) { return simple_shear_stress_kpa(material, g); });
   check.plot = {"Simple shear: " + law_text(material), "shear γ", "shear stress, kPa", false, false, {line, marks}};

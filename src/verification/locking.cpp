@@ -16,19 +16,12 @@ constexpr double kFreeShare = 0.03;             // of the reference
 const std::vector<int> kMeshes{8, 16, 24, 36};  // cells each way; both checks use the last
 
 Material nearly_incompressible(MaterialModel model, VolumeTreatment volume) {
-  Material material;
-  material.model = model;
-  material.volume = volume;
-  material.poissons_ratio = kPoissonsRatio;
-  return material;
+  return {.model = model, .volume = volume, .poissons_ratio = kPoissonsRatio};
 }
 
 CheckCurve tips(const CheckContext& context, const Material& material) {
   CheckCurve curve{material.volume == VolumeTreatment::PerTet ? "volume per tet" : "averaged", {}, {}, false};
-  for (const int n : kMeshes) {
-    curve.x.push_back(n);
-    curve.y.push_back(1000.0 * panel_tip_of_tets_mm(context, material, n));
-  }
+  for (const int n : kMeshes) curve.add(n, 1000.0 * panel_tip_of_tets_mm(context, material, n));
   return curve;
 }
 
@@ -36,8 +29,7 @@ CheckCurve tips(const CheckContext& context, const Material& material) {
 void draw(VerificationCheck& check, MaterialModel model, double reference_um, const CheckCurve& standard,
           const CheckCurve& averaged) {
   const double last = kMeshes.back();
-  const char* law = model == MaterialModel::Corotational ? "corotational" : "stable Neo-Hookean";
-  check.plot = {fmt::format("Cook's membrane at ν = 0.49, {}", law),
+  check.plot = {fmt::format("Cook's membrane at ν = 0.49, {}", law_text({.model = model})),
                 "cells each way",
                 "tip displacement, µm",
                 false,

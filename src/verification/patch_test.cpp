@@ -56,8 +56,7 @@ VerificationCheck patch_test(const CheckContext& context, const Material& materi
   prescribe_boundary(model, gradient(1.0));
   CheckCurve curve{"largest inner force / largest boundary force", {}, {}, false};
   for (const double share : {0.01, 0.03, 0.1, 0.3, 1.0, 2.0}) {
-    curve.x.push_back(share);
-    curve.y.push_back(inner_force_share(context, model, gradient(share)));
+    curve.add(share, inner_force_share(context, model, gradient(share)));
   }
   const double positions = position_error(context, model, gradient(1.0));
   check.found = std::max(positions, *std::max_element(curve.y.begin(), curve.y.end()));

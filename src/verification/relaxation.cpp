@@ -29,8 +29,7 @@ double shear_stress_kpa(const CheckContext& context, const TissueModel& model, T
 }  // namespace
 
 VerificationCheck relaxation_of_one_prony_term(const CheckContext& context) {
-  Material material;
-  material.prony = {kTerm};
+  const Material material{.prony = {kTerm}};
   VerificationCheck check = described(
       "Shear held constant, one Prony term: largest difference of the stress from its relaxation curve over four "
       "relaxation times",
@@ -45,15 +44,14 @@ VerificationCheck relaxation_of_one_prony_term(const CheckContext& context) {
   CheckCurve marks{"computed", {}, {}, false};
   for (int step = 0; step < kSteps; ++step) {
     // The step rule places a change of strain within a step at the middle of the step.
-    marks.x.push_back((step + 0.5) * kStep);
-    marks.y.push_back(shear_stress_kpa(context, model, state) / scale);
+    marks.add((step + 0.5) * kStep, shear_stress_kpa(context, model, state) / scale);
     end_viscous_step(model, state, kStep, context.workers);
     check.found = std::max(check.found, std::abs(marks.y.back() - closed_form(marks.x.back())));
   }
   CheckCurve line{"closed form", {}, {}, true};
   for (int i = 0; i <= 100; ++i) {
-    line.x.push_back(kStep * kSteps * i / 100.0);
-    line.y.push_back(closed_form(line.x.back()));
+    const double time_s = kStep * kSteps * i / 100.0;
+    line.add(time_s, closed_form(time_s));
   }
   check.note = fmt::format("{} steps of {} s", kSteps, kStep);
   check.plot = {"Relaxation with one Prony term", "time, s", "shear stress / (μ γ)", false, false, {line, marks}};

@@ -19,25 +19,21 @@ const std::vector<double> kPressures{1.0, 5.0, 10.0, 20.0};  // kPa, dead loads;
 constexpr std::size_t kClamp = 0;                            // indices of the constraints
 constexpr std::size_t kSupport = 1;
 
+/// Makes a block on the platform, clamped at one end, under a load.
+TissueModel block_on_platform(const TractionConstraint& load) {
+  return make_tissue_model(
+      irregular_block(kSlabSize, {8, 6, 3}, 0.2, 11), {},
+      {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()}, load}, kSlabGravity);
+}
+
 TissueModel pressed_block(double pressure_kpa) {
-  return make_tissue_model(irregular_block(kSlabSize, {8, 6, 3}, 0.2, 11), {},
-                           {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
-                            TractionConstraint{plane_across(2, kSlabSize[2]), Vec3(0, 0, -pressure_kpa)}},
-                           kSlabGravity);
+  return block_on_platform({plane_across(2, kSlabSize[2]), Vec3(0, 0, -pressure_kpa)});
 }
 
 /// Returns the load on clamp and platform, mN: weight and pressure.
 double load_mn(double pressure_kpa) {
   const double weight = units::kg_mm3_from_kg_m3(Material{}.density_kg_m3) * kSlabSize.prod() * -kSlabGravity[2];
   return weight + pressure_kpa * kSlabSize[0] * kSlabSize[1];
-}
-
-/// Makes a block on the platform, clamped at one end and pulled upwards at the other.
-TissueModel lifted_block() {
-  return make_tissue_model(irregular_block(kSlabSize, {8, 6, 3}, 0.2, 11), {},
-                           {FixedConstraint{plane_across(0, 0.0)}, SupportConstraint{Vec3::Zero(), Vec3::UnitZ()},
-                            TractionConstraint{plane_across(0, kSlabSize[0]), Vec3(0, 0, 2.0)}},
-                           kSlabGravity);
 }
 
 }  // namespace
@@ -50,8 +46,7 @@ VerificationCheck support_penetration(const CheckContext& context) {
   for (const double pressure : kPressures) {
     const StaticResult result = solved(context, pressed_block(pressure));
     check.found = std::max(check.found, result.penetration_mm);
-    marks.x.push_back(pressure);
-    marks.y.push_back(result.penetration_mm);
+    marks.add(pressure, result.penetration_mm);
   }
   check.plot = {"Support: penetration",
                 "pressure on top, kPa",
@@ -77,12 +72,9 @@ VerificationCheck support_balance(const CheckContext& context) {
     const Vec3 left_over =
         result.reactions_mn[kSupport] + result.reactions_mn[kClamp] - Vec3(0, 0, load_mn(pressure));
     check.found = std::max(check.found, 1.0 + left_over.cwiseAbs().maxCoeff() / load_mn(pressure));
-    line.x.push_back(pressure);
-    line.y.push_back(load_mn(pressure) / 1000.0);
-    marks.x.push_back(pressure);
-    marks.y.push_back((push + result.reactions_mn[kClamp][2]) / 1000.0);
-    plane.x.push_back(pressure);
-    plane.y.push_back(push / 1000.0);
+    line.add(pressure, load_mn(pressure) / 1000.0);
+    marks.add(pressure, (push + result.reactions_mn[kClamp][2]) / 1000.0);
+    plane.add(pressure, push / 1000.0);
   }
   check.plot = {"Support: balance", "pressure on top, kPa", "force, N", false, false, {line, marks, plane}};
   return check;
@@ -92,7 +84,7 @@ VerificationCheck support_pull(const CheckContext& context) {
   VerificationCheck check =
       described("Block lifted off a support plane at one end: strongest pull of the plane on any vertex",
                 "a platform pushes or does nothing", "mN", 0.0, 0.0);
-  const TissueModel model = lifted_block();
+  const TissueModel model = block_on_platform({plane_across(0, kSlabSize[0]), Vec3(0, 0, 2.0)});
   const TissueState state = solved(context, model).state;
   Points pushes(state.positions.size(), Vec3::Zero());
   add_support_response(model, state, pushes, nullptr);
@@ -101,8 +93,7 @@ VerificationCheck support_pull(const CheckContext& context) {
   for (const VertexId v : select(model.mesh, plane_across(2, 0.0))) {
     check.found = std::max(check.found, -pushes[v.index()][2]);
     highest = std::max(highest, state.positions[v.index()][2]);
-    marks.x.push_back(model.mesh.vertices[v.index()][0]);
-    marks.y.push_back(state.positions[v.index()][2]);
+    marks.add(model.mesh.vertices[v.index()][0], state.positions[v.index()][2]);
   }
   // The test is meaningless unless the tissue lifts.
   if (!(highest > 1.0))

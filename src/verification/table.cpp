@@ -3,14 +3,6 @@
 namespace incise {
 namespace {
 
-Material law(MaterialModel model, VolumeTreatment volume, double poissons_ratio) {
-  Material material;
-  material.model = model;
-  material.volume = volume;
-  material.poissons_ratio = poissons_ratio;
-  return material;
-}
-
 struct NamedLaw {
   const char* name;
   MaterialModel model;
@@ -26,14 +18,14 @@ constexpr std::array<NamedLaw, 4> kLaws{
 template <class Check>
 void add_for_each_law(std::vector<CheckEntry>& table, const std::string& name, double poissons_ratio, Check check) {
   for (const NamedLaw& named : kLaws) {
-    const Material material = law(named.model, named.volume, poissons_ratio);
+    const Material material{.model = named.model, .volume = named.volume, .poissons_ratio = poissons_ratio};
     table.push_back({name + "_" + named.name, [=](const CheckContext& context) { return check(context, material); }});
   }
 }
 
 /// Returns tissue with fibres along x of twice its Young's modulus.
 Material with_fibres() {
-  Material material = law(MaterialModel::Corotational, VolumeTreatment::PerTet, 0.45);
+  Material material{.poissons_ratio = 0.45};
   material.fibre_modulus_kpa = 2.0 * material.youngs_modulus_kpa;
   material.fibre_direction = Vec3::UnitX();
   return material;

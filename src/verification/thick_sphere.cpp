@@ -35,8 +35,7 @@ struct Sphere {
 };
 
 Sphere inflate(const CheckContext& context, int layers) {
-  Material material;
-  material.poissons_ratio = 0.3;
+  const Material material{.poissons_ratio = 0.3};
   TissueModel model = make_tissue_model(eighth_of_a_sphere(kInner, layers), material,
                                         {symmetry_across(0), symmetry_across(1), symmetry_across(2)});
   add_pressure_outwards(model, kInner, kPressure);
@@ -57,21 +56,17 @@ VerificationCheck thick_sphere_rate(const CheckContext& context) {
       described("Thick sphere under inner pressure, ν = 0.3: observed order of convergence of the inner displacement",
                 std::string(kSphereSource) + "; order 2 of linear tets", "-", 2.0, kSphereRateTolerance);
   CheckCurve marks{"inner displacement", {}, {}, false};
-  CheckCurve slope{"second order", {}, {}, true};
   for (const int n : kLayers) {
-    marks.x.push_back(n);
-    marks.y.push_back(std::abs(1.0 - inflate(context, n).inner_um() / closed_form_um(kInner)));
-    slope.x.push_back(n);
-    slope.y.push_back(marks.y[0] * std::pow(static_cast<double>(kLayers[0]) / n, 2));
-    check.note += fmt::format("{}{} layers: {:.2f} % off", n == kLayers[0] ? "" : ", ", n, 100.0 * marks.y.back());
+    marks.add(n, std::abs(1.0 - inflate(context, n).inner_um() / closed_form_um(kInner)));
   }
+  check.note = errors_text(marks, "layers");
   check.found = observed_rate(marks.y[1], marks.y[2]);
   check.plot = {"Thick sphere: convergence",
                 "layers of cells",
                 "relative error of the inner displacement",
                 true,
                 true,
-                {slope, marks}};
+                {line_of_order(marks, 2.0, "second order"), marks}};
   return check;
 }
 
@@ -91,13 +86,12 @@ VerificationCheck thick_sphere_displacement(const CheckContext& context) {
   const std::size_t stride = 1 + finest.state.positions.size() / 200;
   for (std::size_t v = 0; v < finest.state.positions.size(); v += stride) {
     const Vec3& rest = finest.model.mesh.vertices[v];
-    marks.x.push_back(rest.norm());
-    marks.y.push_back(1000.0 * (finest.state.positions[v] - rest).dot(rest.normalized()));
+    marks.add(rest.norm(), 1000.0 * (finest.state.positions[v] - rest).dot(rest.normalized()));
   }
   CheckCurve line{"Lamé", {}, {}, true};
   for (int i = 0; i <= 40; ++i) {
-    line.x.push_back(kInner + (kOuter - kInner) * i / 40.0);
-    line.y.push_back(closed_form_um(line.x.back()));
+    const double radius = kInner + (kOuter - kInner) * i / 40.0;
+    line.add(radius, closed_form_um(radius));
   }
   check.note = fmt::format("finest mesh: {} tets, {:.4f} µm", finest.model.mesh.tets.size(), found.back());
   check.plot = {

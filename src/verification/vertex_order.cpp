@@ -30,8 +30,8 @@ VerificationCheck vertex_order(const CheckContext& context) {
   const TissueState state = solved(context, model).state;
   CheckCurve line{"order as made", {}, {}, true};
   for (int i = 0; i <= 12; ++i) {
-    line.x.push_back(kWedgeSize[0] * i / 12.0);
-    line.y.push_back(mean_displacement(model, state, plane_across(0, line.x.back()))[2]);
+    const double x = kWedgeSize[0] * i / 12.0;
+    line.add(x, mean_displacement(model, state, plane_across(0, x))[2]);
   }
   check.plot = {"Cantilever under its weight, corners renamed", "x at rest, mm", "mean sag, mm", false, false, {line}};
   // Even orders, which keep a tet's volume positive: one for each other corner in first place.

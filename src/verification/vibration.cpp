@@ -18,8 +18,7 @@ constexpr int kStepsPerPeriod = 200;        // implicit Euler then lengthens the
 constexpr double kPeriodTolerance = 0.005;  // of the period
 
 TissueModel bar() {
-  Material material;
-  material.poissons_ratio = 0.0;
+  const Material material{.poissons_ratio = 0.0};
   return make_tissue_model(make_block(kRodSize, {40, 2, 2}), material, {FixedConstraint{plane_across(0, 0.0)}});
 }
 
@@ -47,8 +46,7 @@ CheckCurve swing(const CheckContext& context, const TissueModel& model) {
     const StepReport report = advance_motion(model, motion, settings, workspace, context.workers);
     if (report.outcome != Outcome::Success)
       throw NotSolved(fmt::format("step {}: {}", step, to_string(report.outcome)));
-    curve.x.push_back(motion.time_s);
-    curve.y.push_back(mean_displacement(model, motion.tissue, tip)[0]);
+    curve.add(motion.time_s, mean_displacement(model, motion.tissue, tip)[0]);
   }
   return curve;
 }
@@ -79,14 +77,10 @@ VerificationCheck vibration_period(const CheckContext& context) {
                            kStepsPerPeriod, curve.y.back() / kAmplitude);
   CheckCurve line{"undamped closed form", {}, {}, true};
   for (int i = 0; i <= 100; ++i) {
-    line.x.push_back(period_s() * i / 100.0);
-    line.y.push_back(kAmplitude * std::cos(2.0 * units::kPi * i / 100.0));
+    line.add(period_s() * i / 100.0, kAmplitude * std::cos(2.0 * units::kPi * i / 100.0));
   }
   CheckCurve marks{"computed", {}, {}, false};
-  for (std::size_t i = 0; i < curve.x.size(); i += 4) {
-    marks.x.push_back(curve.x[i]);
-    marks.y.push_back(curve.y[i]);
-  }
+  for (std::size_t i = 0; i < curve.x.size(); i += 4) marks.add(curve.x[i], curve.y[i]);
   check.plot = {"Free vibration of a bar", "time, s", "tip displacement, mm", false, false, {line, marks}};
   return check;
 }

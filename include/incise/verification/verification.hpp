@@ -17,6 +17,10 @@ struct CheckCurve {
   std::vector<double> x;
   std::vector<double> y;      ///< as many as x, all finite
   bool is_reference = false;  ///< true: known values, drawn as a line; false: values found, drawn as marks
+  void add(double at, double value) {
+    x.push_back(at);
+    y.push_back(value);
+  }
 };
 
 /// The result of a check as curves; the labels of the axes include the units.
