@@ -69,15 +69,12 @@ std::optional<Vec3> first_crossing_in_view(const Contour& contour, const Vec3& a
   return std::nullopt;
 }
 
-double extent_mm(const Contour& contour) {
-  return contour.points.empty() ? 0.0 : bounding_box(contour.points).sizes().maxCoeff();
-}
-
-std::optional<SizeProblem> size_problem(const Contour& contour, const std::string& what, double largest_mm) {
-  const double extent = extent_mm(contour);
+std::optional<Problem> size_problem(const Contour& contour, const std::string& what, double largest_mm) {
+  const double extent = contour.points.empty() ? 0.0 : bounding_box(contour.points).sizes().maxCoeff();
   if (extent >= kSmallestTumorMm && extent <= largest_mm) return std::nullopt;
-  return SizeProblem{fmt::format("{} {:.4g} mm across", what, extent),
-                     fmt::format("{} to {} mm", kSmallestTumorMm, largest_mm)};
+  return Problem{.path = {},
+                 .found = fmt::format("{} {:.4g} mm across", what, extent),
+                 .expected = fmt::format("{} to {} mm", kSmallestTumorMm, largest_mm)};
 }
 
 }  // namespace incise

@@ -104,23 +104,27 @@ BodyField BodyField::largest_body(const GrayVolume& occupancy, BodyReport& repor
   return body;
 }
 
+double trilinear(const GrayVolume& volume, const std::array<int, 3>& cell, const Vec3& f) {
+  const auto row = static_cast<std::size_t>(volume.grid.size[0]);
+  const std::size_t slice = row * static_cast<std::size_t>(volume.grid.size[1]);
+  const float* const v = volume.voxels.data() + volume.grid.offset(cell[0], cell[1], cell[2]);
+  const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
+  const auto along_x = [&](const float* p) { return mix(static_cast<double>(p[0]), static_cast<double>(p[1]), f.x()); };
+  return mix(mix(along_x(v), along_x(v + row), f.y()), mix(along_x(v + slice), along_x(v + slice + row), f.y()), f.z());
+}
+
 double BodyField::value_at(const Vec3& local) const {
   const VolumeGrid& g = grid();
-  std::array<std::size_t, 3> cell{};
+  std::array<int, 3> cell{};
   Vec3 f;
   for (int axis = 0; axis < 3; ++axis) {
     const double index = local[axis] / g.spacing_mm[axis];
     const int last = g.size[static_cast<std::size_t>(axis)] - 1;
     if (!(index >= 0.0 && index < last)) return 0.0;  // the outermost voxels are 0
-    cell[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(index);
+    cell[static_cast<std::size_t>(axis)] = static_cast<int>(index);
     f[axis] = index - std::floor(index);
   }
-  const auto row = static_cast<std::size_t>(g.size[0]);
-  const std::size_t slice = row * static_cast<std::size_t>(g.size[1]);
-  const float* const v = volume_.voxels.data() + cell[0] + row * cell[1] + slice * cell[2];
-  const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
-  const auto along_x = [&](const float* p) { return mix(static_cast<double>(p[0]), static_cast<double>(p[1]), f.x()); };
-  return mix(mix(along_x(v), along_x(v + row), f.y()), mix(along_x(v + slice), along_x(v + slice + row), f.y()), f.z());
+  return trilinear(volume_, cell, f);
 }
 
 Box3 BodyField::box() const {

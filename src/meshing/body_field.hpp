@@ -2,11 +2,14 @@
 
 #include <incise/geometry/volume.hpp>
 
+#include <array>
 #include <cstddef>
-#include <cstdint>
-#include <vector>
 
 namespace incise::meshing_detail {
+
+/// Returns the value of a volume, interpolated trilinearly.
+/// @param cell  the voxel with the lowest indices of the eight around the place.  @param f  place between them, [0, 1].
+[[nodiscard]] double trilinear(const GrayVolume& volume, const std::array<int, 3>& cell, const Vec3& f);
 
 /// What BodyField::largest_body kept and left out.
 struct BodyReport {

@@ -16,16 +16,16 @@ SampledSizing::SampledSizing(const SizingField& field, const BodyField& body, do
   if (field.has_band()) {
     const Vec3 extent = body.box().sizes();
     step_mm_ = std::max(kStepMm, std::cbrt(extent.prod() / kMostNodes));
+    std::array<int, 3>& size = distance_mm_.grid.size;
     for (int axis = 0; axis < 3; ++axis) {
-      size_[static_cast<std::size_t>(axis)] = static_cast<std::size_t>(extent[axis] / step_mm_) + 2;
+      size[static_cast<std::size_t>(axis)] = static_cast<int>(extent[axis] / step_mm_) + 2;
     }
-    distance_mm_.reserve(size_[0] * size_[1] * size_[2]);
-    for (std::size_t k = 0; k < size_[2]; ++k) {
-      for (std::size_t j = 0; j < size_[1]; ++j) {
-        for (std::size_t i = 0; i < size_[0]; ++i) {
-          const Vec3 index(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
-          const double exact_mm = field.distance_to_band_mm(body.world_from_local(step_mm_ * index));
-          distance_mm_.push_back(static_cast<float>(exact_mm));  // rounding drops bits that depend on the frame
+    distance_mm_.voxels.reserve(distance_mm_.grid.voxel_count());
+    for (int k = 0; k < size[2]; ++k) {
+      for (int j = 0; j < size[1]; ++j) {
+        for (int i = 0; i < size[0]; ++i) {
+          const double exact_mm = field.distance_to_band_mm(body.world_from_local(step_mm_ * Vec3(i, j, k)));
+          distance_mm_.voxels.push_back(static_cast<float>(exact_mm));  // rounding drops bits that depend on the frame
         }
       }
     }
@@ -34,22 +34,18 @@ SampledSizing::SampledSizing(const SizingField& field, const BodyField& body, do
 }
 
 double SampledSizing::distance_mm(const Vec3& local) const {
-  if (distance_mm_.empty()) return 0.0;
-  std::array<std::size_t, 3> cell{};
+  if (distance_mm_.voxels.empty()) return 0.0;
+  std::array<int, 3> cell{};
   Vec3 f;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     // Circumcentres may lie outside the box: they get the value at its border.
-    const double index = std::clamp(local[axis] / step_mm_, 0.0, static_cast<double>(size_[a] - 1));
-    cell[a] = std::min(static_cast<std::size_t>(index), size_[a] - 2);
-    f[axis] = index - static_cast<double>(cell[a]);
+    const int last = distance_mm_.grid.size[a] - 1;
+    const double index = std::clamp(local[axis] / step_mm_, 0.0, static_cast<double>(last));
+    cell[a] = std::min(static_cast<int>(index), last - 1);
+    f[axis] = index - cell[a];
   }
-  const std::size_t slice = size_[0] * size_[1];
-  const float* const v = distance_mm_.data() + cell[0] + size_[0] * cell[1] + slice * cell[2];
-  const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
-  const auto along_x = [&](const float* p) { return mix(static_cast<double>(p[0]), static_cast<double>(p[1]), f.x()); };
-  return mix(mix(along_x(v), along_x(v + size_[0]), f.y()),
-             mix(along_x(v + slice), along_x(v + slice + size_[0]), f.y()), f.z());
+  return trilinear(distance_mm_, cell, f);
 }
 
 void SampledSizing::measure_body(const BodyField& body, double iso) {

@@ -24,9 +24,8 @@ class SampledSizing {
  private:
   void measure_body(const BodyField& body, double iso);
 
-  std::array<std::size_t, 3> size_{};
   double step_mm_ = 1.0;
-  std::vector<float> distance_mm_;  ///< empty for a uniform field
+  GrayVolume distance_mm_;          ///< on the lattice; empty for a uniform field
   std::vector<double> volume_mm3_;  ///< of the body, by distance in bins of kBinMm
 };
 

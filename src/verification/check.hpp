@@ -4,6 +4,8 @@
 #include <incise/mechanics/statics.hpp>
 #include <incise/verification/verification.hpp>
 
+#include <functional>
+
 namespace incise {
 
 /// Context of a check. The monitor only passes on a request to stop.
@@ -48,6 +50,13 @@ void require_small_error(double relative_error, double bound);
 /// Returns "4 cells: 1.23 % off, 8 cells: …" for relative errors on meshes of x cells.
 [[nodiscard]] std::string errors_text(const CheckCurve& errors, const char* cells);
 
+/// Returns the vertical displacement, mm, of the middle of the right edge of Cook's panel in plane strain under a small
+/// shear, computed with one layer of n x n cells of tets.
+[[nodiscard]] double panel_tip_of_tets_mm(const CheckContext& context, const Material& material, int n);
+/// Returns the same, computed with nine-node quadrilaterals, extrapolated from three meshes; uses only E and ν of the
+/// material.
+[[nodiscard]] double panel_reference_tip_mm(const Material& material);
+
 // The checks, one file each.
 VerificationCheck patch_test(const CheckContext& context, const Material& material);
 VerificationCheck uniaxial_stretch(const CheckContext& context, const Material& material);
@@ -67,5 +76,12 @@ VerificationCheck vertex_order(const CheckContext& context);
 VerificationCheck support_penetration(const CheckContext& context);
 VerificationCheck support_balance(const CheckContext& context);
 VerificationCheck support_pull(const CheckContext& context);
+
+struct CheckEntry {
+  std::string name;
+  std::function<VerificationCheck(const CheckContext&)> run;
+};
+/// Returns every check, in the order in which they run.
+[[nodiscard]] const std::vector<CheckEntry>& check_table();
 
 }  // namespace incise

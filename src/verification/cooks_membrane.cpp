@@ -4,7 +4,6 @@
 #include "verification/check.hpp"
 #include "verification/closed_forms.hpp"
 #include "verification/convergence.hpp"
-#include "verification/cooks_panel_tip.hpp"
 #include "verification/plane_reference.hpp"
 
 #include <incise/core/units.hpp>

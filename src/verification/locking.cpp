@@ -1,7 +1,6 @@
 // Nearly incompressible tissue on a coarse mesh: the standard linear tet locks; tets with averaged volume must not.
 #include "verification/bodies.hpp"
 #include "verification/check.hpp"
-#include "verification/cooks_panel_tip.hpp"
 
 #include <fmt/format.h>
 

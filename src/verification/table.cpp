@@ -1,4 +1,4 @@
-#include "verification/table.hpp"
+#include "verification/check.hpp"
 
 namespace incise {
 namespace {

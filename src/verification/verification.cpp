@@ -1,5 +1,4 @@
 #include "verification/check.hpp"
-#include "verification/table.hpp"
 
 #include <fmt/format.h>
 
