@@ -79,8 +79,8 @@ double mean_width(const KerfPicture& picture, const Contour& curve) {
 /// Returns the line equally far from the tissue inside the ring and from all other tissue: the zero level of a
 /// difference of distances. It separates the two, so it is closed whatever the shape of the kerf.
 std::optional<Contour> equidistant_loop(const KerfPicture& picture, const Raster& inside, const Vec3& enclosed) {
-  const Raster outside = set_where(
-      picture.mask, [&](std::size_t p) { return picture.mask.pixels[p] == 0 && inside.pixels[p] == 0; });
+  const Raster outside =
+      set_where(picture.mask, [&](std::size_t p) { return picture.mask.pixels[p] == 0 && inside.pixels[p] == 0; });
   const ScalarRaster to_inside = distance_to(inside, 1);
   const ScalarRaster to_outside = distance_to(outside, 1);
   ScalarRaster difference(picture.mask, 0.0);

@@ -34,8 +34,7 @@ ScalarRaster coverage_of(const ViewTets& tets, const DepthBuffer& surface, const
 }
 
 Raster mask_of(const ScalarRaster& coverage, const KerfMidlineSettings& settings) {
-  const Raster mask =
-      set_where(coverage, [&](std::size_t p) { return coverage.pixels[p] >= settings.min_coverage; });
+  const Raster mask = set_where(coverage, [&](std::size_t p) { return coverage.pixels[p] >= settings.min_coverage; });
   return holes_filled(closed(mask, settings.closing_mm), settings.max_island_mm2);
 }
 

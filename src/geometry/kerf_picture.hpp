@@ -32,8 +32,8 @@ using ViewTets = std::vector<std::array<Vec3, 4>>;
 /// Returns the points in view coordinates, mm.
 [[nodiscard]] Points points_in_view(std::span<const Vec3> points, const ViewFrame& view);
 
-/// Calls visit(pixel, centre, tet) for each tet and each pixel that shows the surface and whose centre lies in the tet's
-/// box. @param pixel  its offset.  @param tet  as SightLines.
+/// Calls visit(pixel, centre, tet) for each tet and each pixel that shows the surface and whose centre lies in the
+/// tet's box. @param pixel  its offset.  @param tet  as SightLines.
 template <class Visit>
 void for_each_pixel_over(const ViewTets& tets, const DepthBuffer& surface, const Visit& visit) {
   for (const std::array<Vec3, 4>& corners : tets) {

@@ -45,7 +45,8 @@ Stiffness stiffness_of(const TissueModel& model) {
   };
   const LameParameters common = lame_parameters(model.material.youngs_modulus_kpa, model.material.poissons_ratio);
   const bool is_uniform = std::ranges::all_of(model.lame, is_like_first);
-  if (is_uniform && is_like_first(common)) return {{model.material.youngs_modulus_kpa}, {model.material.poissons_ratio}};
+  if (is_uniform && is_like_first(common))
+    return {{model.material.youngs_modulus_kpa}, {model.material.poissons_ratio}};
   Stiffness stiffness;
   for (const LameParameters& l : model.lame) {
     stiffness.youngs_modulus_kpa.push_back(l.mu_kpa * (3.0 * l.lambda_kpa + 2.0 * l.mu_kpa) /
@@ -81,7 +82,8 @@ void add_comment(pugi::xml_node parent, const std::string& text) {
   // Two hyphens would end a comment early; titles come from outside.
   std::string safe = text;
   // XML 1.0 allows no control characters except tab, line feed and carriage return.
-  std::erase_if(safe, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
+  std::erase_if(safe,
+                [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; });
   for (std::size_t at = safe.find("--"); at != std::string::npos; at = safe.find("--")) safe.replace(at, 2, "- -");
   parent.append_child(pugi::node_comment).set_value((" " + safe + " ").c_str());
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace incise::meshing_detail {
 namespace {
@@ -76,9 +77,7 @@ void require_fractions(const GrayVolume& occupancy) {
 }
 
 double total(const GrayVolume& volume) {
-  double sum = 0.0;
-  for (const float value : volume.voxels) sum += static_cast<double>(value);
-  return sum * volume.grid.voxel_volume_mm3();
+  return std::accumulate(volume.voxels.begin(), volume.voxels.end(), 0.0) * volume.grid.voxel_volume_mm3();
 }
 
 }  // namespace
@@ -95,9 +94,8 @@ BodyField BodyField::largest_body(const GrayVolume& occupancy, BodyReport& repor
   const auto largest = std::max_element(components.sizes.begin(), components.sizes.end()) - components.sizes.begin();
   const auto is_in_body = [&](std::size_t at) { return components.of_voxel[at] == largest; };
   BodyField body;
-  body.volume_ = cut_out(occupancy.grid, box_of_voxels(occupancy.grid, is_in_body), 1, [&](std::size_t at) {
-    return is_in_body(at) ? std::min(occupancy.voxels[at], 1.0F) : 0.0F;
-  });
+  body.volume_ = cut_out(occupancy.grid, box_of_voxels(occupancy.grid, is_in_body), 1,
+                         [&](std::size_t at) { return is_in_body(at) ? std::min(occupancy.voxels[at], 1.0F) : 0.0F; });
   report.volume_mm3 = total(body.volume_);
   report.dropped_bodies = components.sizes.size() - 1;
   report.dropped_volume_mm3 = std::max(total(occupancy) - report.volume_mm3, 0.0);

@@ -15,9 +15,8 @@ GrayVolume occupancy_of(const LabelVolume& labels, double sigma_voxels) {
   const auto is_labelled = [&](std::size_t at) { return labels.voxels[at] != 0; };
   const Eigen::AlignedBox3i box = meshing_detail::box_of_voxels(labels.grid, is_labelled);
   INCISE_REQUIRE(!box.isEmpty(), "labels: found no voxel other than 0, expected a labelled body");
-  GrayVolume result =
-      meshing_detail::cut_out(labels.grid, box, gaussian_reach(sigma_voxels) + 1,
-                              [&](std::size_t at) { return is_labelled(at) ? 1.0F : 0.0F; });
+  GrayVolume result = meshing_detail::cut_out(labels.grid, box, gaussian_reach(sigma_voxels) + 1,
+                                              [&](std::size_t at) { return is_labelled(at) ? 1.0F : 0.0F; });
   blur(result, sigma_voxels);
   return result;
 }

@@ -46,12 +46,12 @@ struct PlaneDistance {
   bool is_inside = false;
 };
 
-PlaneDistance plane_distance(const Points& path, bool is_closed, const Vec3& q) {
+PlaneDistance plane_distance(const Contour& path, const Vec3& q) {
   PlaneDistance best;
-  const std::size_t count = path.size();
-  for (std::size_t i = is_closed ? 0 : 1; i < count; ++i) {
-    const Vec3& a = path[i == 0 ? count - 1 : i - 1];
-    const Vec3& b = path[i];
+  const std::size_t count = path.points.size();
+  for (std::size_t i = path.is_closed ? 0 : 1; i < count; ++i) {
+    const Vec3& a = path.points[i == 0 ? count - 1 : i - 1];
+    const Vec3& b = path.points[i];
     const Vec2 along = (b - a).head<2>();
     const Vec2 from_a = (q - a).head<2>();
     const double squared_length = along.squaredNorm();
@@ -62,7 +62,7 @@ PlaneDistance plane_distance(const Points& path, bool is_closed, const Vec3& q) 
       best.height = a.z() + t * (b.z() - a.z());
     }
     // Even-odd rule: count the edges crossed by the ray from q along +x.
-    if (is_closed && (a.y() > q.y()) != (b.y() > q.y()) &&
+    if (path.is_closed && (a.y() > q.y()) != (b.y() > q.y()) &&
         q.x() < a.x() + (b.x() - a.x()) * (q.y() - a.y()) / (b.y() - a.y())) {
       best.is_inside = !best.is_inside;
     }
@@ -103,16 +103,13 @@ SizingField SizingField::around_cut(const PlannedCut& cut, const SizingSettings&
 
   const double widest_mm = std::max(settings.band_inside_mm, settings.band_outside_mm);
   Band band{.view = view_along(cut.approach),
-            .path = {},
-            .is_closed = cut.path.is_closed,
+            .path = cut.path.points.size() > kMaxPathPoints ? resample(cut.path, kMaxPathPoints) : cut.path,
             .inside_mm = settings.band_inside_mm,
             .outside_mm = cut.path.is_closed ? settings.band_outside_mm : widest_mm,
             // There is tissue above the path only where the surface bulges next to it.
             .above_mm = widest_mm,
             .below_mm = cut.depth_mm + settings.band_below_mm};
-  const bool is_long = cut.path.points.size() > kMaxPathPoints;
-  const Contour path = is_long ? resample(cut.path, kMaxPathPoints) : cut.path;
-  for (const Vec3& p : path.points) band.path.push_back(band.view.to_view(p));
+  for (Vec3& p : band.path.points) p = band.view.to_view(p);
 
   SizingField field;
   field.settings_ = settings;
@@ -123,9 +120,9 @@ SizingField SizingField::around_cut(const PlannedCut& cut, const SizingSettings&
 double SizingField::distance_to_band_mm(const Vec3& p) const {
   if (!band_) return 0.0;
   const Vec3 q = band_->view.to_view(p);
-  const PlaneDistance nearest = plane_distance(band_->path, band_->is_closed, q);
+  const PlaneDistance nearest = plane_distance(band_->path, q);
   const double lateral_mm = (nearest.is_inside ? -1.0 : 1.0) * std::sqrt(nearest.squared);
-  const double inner_mm = band_->is_closed ? -band_->inside_mm : 0.0;
+  const double inner_mm = band_->path.is_closed ? -band_->inside_mm : 0.0;
   return std::hypot(excess(lateral_mm, inner_mm, band_->outside_mm),
                     excess(nearest.height - q.z(), -band_->above_mm, band_->below_mm));
 }

@@ -73,14 +73,6 @@ void require_closed(const TriMesh& surface) {
   }
 }
 
-Box3 box_around(const Points& points, const std::vector<Triangle>& triangles) {
-  Box3 box;
-  for (const Triangle& triangle : triangles) {
-    for (const VertexId id : triangle) box.extend(points[id.index()]);
-  }
-  return box;
-}
-
 /// Returns twice the signed area of the triangle of a, b and (y, z) in the y-z plane. The computation is the same for
 /// both triangles that share the edge, so no ray slips between them.
 double side_of(const TriMesh& surface, VertexId a, VertexId b, double y, double z) {
@@ -135,9 +127,7 @@ class RayLattice {
 
  private:
   void cross(const Triangle& t) {
-    const Vec3& a = surface_.vertices[t[0].index()];
-    const Vec3& b = surface_.vertices[t[1].index()];
-    const Vec3& c = surface_.vertices[t[2].index()];
+    const auto [a, b, c] = corners_of(surface_.vertices, t);
     const auto square = [this](double at, double from) { return static_cast<int>(std::floor((at - from) / step_)); };
     const int j0 = std::max(square(std::min({a.y(), b.y(), c.y()}), y0_), 0);
     const int j1 = std::min(square(std::max({a.y(), b.y(), c.y()}), y0_), ny_ - 1);
@@ -208,8 +198,10 @@ GrayVolume occupancy_of(const TriMesh& closed_surface, double voxel_mm, double s
   INCISE_REQUIRE(sigma_voxels >= 0.0 && sigma_voxels <= 10.0,
                  fmt::format("sigma_voxels: found {}, expected 0 to 10", sigma_voxels));
   require_closed(closed_surface);
-  const Box3 box = box_around(closed_surface.vertices, closed_surface.triangles);
-
+  Box3 box;
+  for (const Triangle& triangle : closed_surface.triangles) {
+    for (const VertexId id : triangle) box.extend(vertex(closed_surface.vertices, id));
+  }
   GrayVolume result;
   result.grid = grid_around(box, voxel_mm, gaussian_reach(sigma_voxels) + 1);
   const int voxels_along_x = result.grid.size[0];

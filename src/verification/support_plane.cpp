@@ -11,7 +11,7 @@
 namespace incise {
 namespace {
 
-const Vec3 kSlabSize(40, 30, 15);               // mm
+const Vec3 kSlabSize(40, 30, 15);           // mm
 constexpr double kPenetration = 0.05;       // mm, promised by SupportPlane
 constexpr double kBalanceTolerance = 1e-6;  // of the load: Newton stops at 1e-10
 const Vec3 kSlabGravity(0, 0, -units::kStandardGravityMmS2);
@@ -69,8 +69,7 @@ VerificationCheck support_balance(const CheckContext& context) {
   for (const double pressure : kPressures) {
     const StaticResult result = solved(context, pressed_block(pressure));
     const double push = result.reactions_mn[kSupport][2];
-    const Vec3 left_over =
-        result.reactions_mn[kSupport] + result.reactions_mn[kClamp] - Vec3(0, 0, load_mn(pressure));
+    const Vec3 left_over = result.reactions_mn[kSupport] + result.reactions_mn[kClamp] - Vec3(0, 0, load_mn(pressure));
     check.found = std::max(check.found, 1.0 + left_over.cwiseAbs().maxCoeff() / load_mn(pressure));
     line.add(pressure, load_mn(pressure) / 1000.0);
     marks.add(pressure, (push + result.reactions_mn[kClamp][2]) / 1000.0);

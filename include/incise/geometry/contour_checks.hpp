@@ -14,7 +14,8 @@ namespace incise {
 /// @pre all points finite.
 [[nodiscard]] std::optional<Vec3> first_crossing_in_view(const Contour& contour, const Vec3& approach);
 
-/// Limits of a tumour's size, the longest side of its bounding box, mm: a smaller or larger one indicates a wrong scale or unit.
+/// Limits of a tumour's size, the longest side of its bounding box, mm: a smaller or larger one indicates a wrong scale
+/// or unit.
 inline constexpr double kSmallestTumorMm = 2.0;
 inline constexpr double kLargestTumorMm = 100.0;
 /// Largest size of an incision, mm: room for the widest margin round the largest tumour.

@@ -76,8 +76,7 @@ class SizingField {
  private:
   struct Band {
     ViewFrame view;
-    Points path;  ///< in the view's frame: x, y, height; mm
-    bool is_closed = true;
+    Contour path;  ///< in the view's frame: x, y, height; mm
     double inside_mm = 0.0;
     double outside_mm = 0.0;
     double above_mm = 0.0;
