@@ -39,15 +39,7 @@ NeighbourSearch::NeighbourSearch(std::span<const Vec3> points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     INCISE_REQUIRE(points[i].allFinite(), fmt::format("point {} is not finite", i));
   }
-  tree_ = std::make_unique<Tree>(Points(points.begin(), points.end()));
-}
-
-NeighbourSearch::~NeighbourSearch() = default;
-NeighbourSearch::NeighbourSearch(NeighbourSearch&&) noexcept = default;
-NeighbourSearch& NeighbourSearch::operator=(NeighbourSearch&&) noexcept = default;
-
-std::size_t NeighbourSearch::size() const {
-  return tree_->source.points.size();
+  tree_ = std::make_shared<Tree>(Points(points.begin(), points.end()));
 }
 
 Neighbour NeighbourSearch::nearest(const Vec3& p) const {
@@ -59,7 +51,7 @@ Neighbour NeighbourSearch::nearest(const Vec3& p) const {
 }
 
 std::vector<Neighbour> NeighbourSearch::nearest(const Vec3& p, std::size_t count) const {
-  count = std::min(count, size());
+  count = std::min(count, tree_->source.points.size());
   std::vector<std::size_t> indices(count);
   std::vector<double> squared(count);
   if (count > 0) tree_->index.knnSearch(p.data(), count, indices.data(), squared.data());

@@ -82,7 +82,7 @@ struct SurfaceQuery::Tree {
   }
 };
 
-SurfaceQuery::SurfaceQuery(const TriMesh& surface) : tree_(std::make_unique<Tree>()) {
+SurfaceQuery::SurfaceQuery(const TriMesh& surface) : tree_(std::make_shared<Tree>()) {
   INCISE_REQUIRE(!surface.triangles.empty(), "expected a surface with at least 1 triangle, found none");
   std::vector<Box3> boxes;
   boxes.reserve(surface.triangles.size());
@@ -101,10 +101,6 @@ SurfaceQuery::SurfaceQuery(const TriMesh& surface) : tree_(std::make_unique<Tree
   const Box3& all = tree_->boxes.box();
   tree_->slack_mm = kRaySlack * (1.0 + all.sizes().maxCoeff() + all.center().norm());
 }
-
-SurfaceQuery::~SurfaceQuery() = default;
-SurfaceQuery::SurfaceQuery(SurfaceQuery&&) noexcept = default;
-SurfaceQuery& SurfaceQuery::operator=(SurfaceQuery&&) noexcept = default;
 
 SurfacePoint SurfaceQuery::nearest(const Vec3& p) const {
   INCISE_REQUIRE(p.allFinite(), "the query point is not finite");

@@ -48,7 +48,7 @@ struct TetLocator::Tree {
   BoxTree boxes;
 };
 
-TetLocator::TetLocator(const TetMesh& mesh, std::span<const Vec3> positions) : tree_(std::make_unique<Tree>()) {
+TetLocator::TetLocator(const TetMesh& mesh, std::span<const Vec3> positions) : tree_(std::make_shared<Tree>()) {
   INCISE_REQUIRE(!mesh.tets.empty(), "expected a mesh with at least 1 tet, found none");
   INCISE_REQUIRE(
       positions.size() == mesh.vertices.size(),
@@ -68,10 +68,6 @@ TetLocator::TetLocator(const TetMesh& mesh, std::span<const Vec3> positions) : t
   }
   tree_->boxes = BoxTree(boxes);
 }
-
-TetLocator::~TetLocator() = default;
-TetLocator::TetLocator(TetLocator&&) noexcept = default;
-TetLocator& TetLocator::operator=(TetLocator&&) noexcept = default;
 
 std::optional<EmbeddedPoint> TetLocator::locate(const Vec3& p, double tolerance_mm) const {
   INCISE_REQUIRE(p.allFinite(), "the query point is not finite");

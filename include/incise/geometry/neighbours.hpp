@@ -21,11 +21,7 @@ class NeighbourSearch {
  public:
   /// @pre at least one point, all finite.
   explicit NeighbourSearch(std::span<const Vec3> points);
-  ~NeighbourSearch();
-  NeighbourSearch(NeighbourSearch&&) noexcept;
-  NeighbourSearch& operator=(NeighbourSearch&&) noexcept;
 
-  [[nodiscard]] std::size_t size() const;
   [[nodiscard]] Neighbour nearest(const Vec3& p) const;
   /// Returns the `count` nearest points, or all points if there are fewer.
   [[nodiscard]] std::vector<Neighbour> nearest(const Vec3& p, std::size_t count) const;
@@ -34,7 +30,7 @@ class NeighbourSearch {
 
  private:
   struct Tree;
-  std::unique_ptr<Tree> tree_;
+  std::shared_ptr<Tree> tree_;  ///< shared with copies; does not change once built
 };
 
 }  // namespace incise

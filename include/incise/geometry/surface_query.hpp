@@ -25,9 +25,6 @@ class SurfaceQuery {
  public:
   /// @throws InvalidArgument for a surface without triangles, or a vertex out of range or not finite.
   explicit SurfaceQuery(const TriMesh& surface);
-  ~SurfaceQuery();
-  SurfaceQuery(SurfaceQuery&&) noexcept;
-  SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
 
   /// Returns the nearest point of the surface; of equally near triangles, on the one with the lowest index.
   [[nodiscard]] SurfacePoint nearest(const Vec3& p) const;
@@ -47,7 +44,7 @@ class SurfaceQuery {
 
  private:
   struct Tree;
-  std::unique_ptr<Tree> tree_;
+  std::shared_ptr<Tree> tree_;  ///< shared with copies; does not change once built
 };
 
 /// Returns two triangles of a surface that pass through each other although they have no corner position in common: the
@@ -65,9 +62,6 @@ struct EmbeddedPoint {
 class TetLocator {
  public:
   TetLocator(const TetMesh& mesh, std::span<const Vec3> positions);
-  ~TetLocator();
-  TetLocator(TetLocator&&) noexcept;
-  TetLocator& operator=(TetLocator&&) noexcept;
 
   /// Returns the tet that contains p, or else the nearest one with its (extrapolating) barycentric coordinates; nullopt
   /// if p is farther than `tolerance_mm` from every tet.
@@ -75,7 +69,7 @@ class TetLocator {
 
  private:
   struct Tree;
-  std::unique_ptr<Tree> tree_;
+  std::shared_ptr<Tree> tree_;  ///< shared with copies; does not change once built
 };
 
 /// Returns the place of an embedded point for the given vertex positions, mm.
