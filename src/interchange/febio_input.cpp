@@ -1,6 +1,5 @@
 #include "interchange/specimen_text.hpp"
 
-#include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 
 #include <fmt/format.h>
