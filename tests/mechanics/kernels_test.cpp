@@ -15,7 +15,6 @@ using testing::shaken;
 
 constexpr double kDoubleTolerance =
     1e-12;  // of the largest entry: sums of some 30 terms in another order, with and without fused rounding
-constexpr double kFloatTolerance = 1e-5;
 
 /// Runs each test with the instruction set of its parameter and puts the best one back.
 class Kernels : public ::testing::TestWithParam<Isa> {
@@ -119,29 +118,6 @@ TEST_P(Kernels, MultiplyAsADenseMatrixDoes) {
   for (std::size_t v = 0; v < x.size(); ++v) {
     const Vec3 e = expected.segment<3>(static_cast<Eigen::Index>(3 * v));
     ASSERT_LE((y[v] - e).norm(), kDoubleTolerance * expected.cwiseAbs().maxCoeff()) << "vertex " << v;
-  }
-}
-
-TEST_P(Kernels, MultiplyInSinglePrecisionToItsRounding) {
-  const TissueModel model = clamped_block({5, 4, 3}, 0.49);
-  const Response r = response(model, shaken(model, 0.4, 3), GetParam());
-  Workers workers(2);
-  BlockMatrixF single(model.pattern);
-  convert(r.stiffness, single, workers);
-  std::vector<Eigen::Vector4f> x;
-  Points exact_x;
-  for (const Vec3& p : shaken(model, 3.0, 17).positions) {
-    x.emplace_back(static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), 0.0F);
-    exact_x.emplace_back(x.back().head<3>().cast<double>());
-  }
-  std::vector<Eigen::Vector4f> y(x.size());
-  Points expected(x.size());
-  multiply(single, x, y, workers);
-  multiply(r.stiffness, exact_x, expected, workers);
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    ASSERT_LE((y[v].head<3>().cast<double>() - expected[v]).norm(), kFloatTolerance * testing::largest(expected))
-        << "vertex " << v;
-    ASSERT_EQ(y[v][3], 0.0F) << "vertex " << v;
   }
 }
 

@@ -32,22 +32,8 @@ struct BlockMatrix {
   }
 };
 
-/// Single-precision copy of a BlockMatrix, for products whose errors are corrected elsewhere. It needs half the memory,
-/// and memory bandwidth limits the product. Each entry is rounded by up to 6e-8 of its value.
-struct BlockMatrixF {
-  std::shared_ptr<const BlockPattern> pattern;
-  std::vector<float> values;  ///< 9 per block, row-major, and 4 zeros: room for one load beyond the end
-
-  explicit BlockMatrixF(std::shared_ptr<const BlockPattern> p);
-};
-/// Rounds every entry of `matrix` into `result`. @throws InvalidArgument unless both share one pattern object.
-void convert(const BlockMatrix& matrix, BlockMatrixF& result, Workers& workers);
-
 /// Computes y = A x; x and y are N x 3. Sums have a fixed order: same bits at any thread count with the same
 /// active_isa(). @throws InvalidArgument for vectors of another size.
 void multiply(const BlockMatrix& matrix, std::span<const Vec3> x, std::span<Vec3> y, Workers& workers);
-/// The same in single precision. x and y are N x 4; the fourth number must be 0 in x and is 0 in y.
-void multiply(const BlockMatrixF& matrix, std::span<const Eigen::Vector4f> x, std::span<Eigen::Vector4f> y,
-              Workers& workers);
 
 }  // namespace incise

@@ -89,8 +89,6 @@ struct KernelTable {
   /// y_i = sum over j of column_j[i] c_j, for a dense n x n matrix stored by columns.
   void (*multiply_dense)(const double* matrix, std::size_t n, const double* c, double* y, std::size_t begin,
                          std::size_t end);
-  /// q = A p; returns p · q. The matrix needs room for 4 numbers beyond its last.
-  double (*multiply_four)(const BlockRows<float>&, const float* p, float* q, std::size_t begin, std::size_t end);
   /// q = A p for a matrix of 16-bit integers, from s p and s; returns p · q.
   double (*multiply_whole)(const BlockRows<std::int16_t>&, const PcgVectors&, std::size_t begin, std::size_t end);
   /// Rounds each number of a block times `factor` to the nearest integer; adds the rounding errors, times `weight`, to

@@ -5,8 +5,8 @@
 
 namespace incise {
 
-const KernelTable kAvx512Kernels{sweep_tets,          multiply_double,   multiply_dense,   multiply_four,
-                                 multiply_whole,      round_block,       move_four,        turn_four,
-                                 multiply_dense_rows, sum_blocks_double, sum_blocks_single};
+const KernelTable kAvx512Kernels{sweep_tets,        multiply_double,  multiply_dense, multiply_whole,
+                                 round_block,       move_four,        turn_four,      multiply_dense_rows,
+                                 sum_blocks_double, sum_blocks_single};
 
 }  // namespace incise
