@@ -4,42 +4,9 @@
 #include <unordered_set>
 
 namespace incise {
-namespace {
-
-struct FaceKey {
-  std::array<std::int32_t, 3> corners;
-  std::int32_t tet;
-  std::int32_t face;
-};
-
-std::vector<std::array<std::int32_t, 4>> neighbours_of(const std::vector<Tet>& tets) {
-  std::vector<FaceKey> faces;
-  faces.reserve(4 * tets.size());
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    for (int f = 0; f < 4; ++f) {
-      const Triangle face = face_of(tets[t], f);
-      std::array<std::int32_t, 3> corners{};
-      for (std::size_t c = 0; c < 3; ++c) corners[c] = static_cast<std::int32_t>(face[c].index());
-      std::sort(corners.begin(), corners.end());
-      faces.push_back({corners, static_cast<std::int32_t>(t), f});
-    }
-  }
-  std::sort(faces.begin(), faces.end(), [](const FaceKey& a, const FaceKey& b) {
-    return a.corners != b.corners ? a.corners < b.corners : a.tet < b.tet;
-  });
-  std::vector<std::array<std::int32_t, 4>> result(tets.size(), {-1, -1, -1, -1});
-  for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
-    if (faces[i].corners != faces[i + 1].corners) continue;
-    result[static_cast<std::size_t>(faces[i].tet)][static_cast<std::size_t>(faces[i].face)] = faces[i + 1].tet;
-    result[static_cast<std::size_t>(faces[i + 1].tet)][static_cast<std::size_t>(faces[i + 1].face)] = faces[i].tet;
-  }
-  return result;
-}
-
-}  // namespace
 
 LooseParts::LooseParts(const TetMesh& mesh, std::vector<std::uint8_t> is_held)
-    : tets_(mesh.tets), neighbours_(neighbours_of(mesh.tets)), is_held_(std::move(is_held)) {}
+    : tets_(mesh.tets), neighbours_(face_neighbours(mesh)), is_held_(std::move(is_held)) {}
 
 std::vector<std::size_t> LooseParts::beside(std::span<const std::size_t> gone,
                                             std::span<const std::uint8_t> is_live) const {
