@@ -1,6 +1,7 @@
 #include "virtual_bench/electrode.hpp"
 #include "virtual_bench/loose_parts.hpp"
 
+#include <incise/bench_kit/pictures.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/kerf_contours.hpp>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -69,9 +71,8 @@ std::vector<TipPose> cutting_part(const std::vector<TipPose>& course) {
 }
 
 double mean_of(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+  if (values.empty()) return 0.0;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 double mean_speed(const std::vector<TipPose>& course) {
@@ -347,8 +348,14 @@ BenchCut Cut::run(const std::vector<TipPose>& given, double power_w, Workers& wo
 BenchCut cut_specimen(const BenchBody& body, const std::vector<TipPose>& course, double power_w, Workers& workers,
                       Monitor& monitor) {
   INCISE_REQUIRE(power_w > 0.0 && std::isfinite(power_w), fmt::format("expected a power above 0 W, found {}", power_w));
-  Cut cut(body, power_w);
-  return cut.run(course, power_w, workers, monitor);
+  return Cut(body, power_w).run(course, power_w, workers, monitor);
+}
+
+std::vector<double> true_errors_mm(const BenchBody& body, const BenchCut& cut, double target_mm, std::size_t points) {
+  INCISE_REQUIRE(cut.inner_edge.has_value(), "expected a cut with a closed inner edge");
+  const ViewFrame view = view_along(body.approach);
+  return errors_seen_mm(resample(flat_in_view(*cut.inner_edge, view), points).points,
+                        flat_in_view(cut.tumor_edge, view), target_mm);
 }
 
 }  // namespace incise
