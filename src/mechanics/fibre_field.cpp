@@ -1,8 +1,8 @@
+#include "mechanics/loads.hpp"
 #include "mechanics/shape_gradients.hpp"
 #include "mechanics/vector_text.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/expect.hpp>
 #include <incise/mechanics/fibre_field.hpp>
 
 #include <fmt/format.h>
@@ -22,25 +22,8 @@ constexpr double kTolerance = 1e-12;
 /// Gradient, as a share of the body's mean gradient, below which the potential counts as flat.
 constexpr double kLeastGradient = 1e-6;
 
-/// Returns the vertices of one of the two regions.
-std::vector<VertexId> selected(const TetMesh& mesh, const Region& region, const char* name) {
-  const std::string field = fmt::format("{}.{}", kField, name);
-  std::vector<VertexId> vertices;
-  try {
-    vertices = select(mesh, region);
-  } catch (const InvalidArgument& problem) {
-    throw CaseError("case", field, "an unusable region", "one that can be applied to this mesh", problem.as_hint());
-  }
-  if (!vertices.empty()) return vertices;
-  const Box3 box = bounding_box(mesh.vertices);
-  throw CaseError("case", field, "a region without any vertex of the mesh", "one with at least one vertex",
-                  fmt::format("The mesh fills the box {} to {} mm", text_of(box.min()), text_of(box.max())));
-}
-
 void require_disjoint(const TetMesh& mesh, std::span<const VertexId> from, std::span<const VertexId> to) {
-  std::vector<std::uint8_t> is_from(mesh.vertices.size(), 0);
-  for (const VertexId v : from) is_from[v.index()] = 1;
-  const auto common = std::find_if(to.begin(), to.end(), [&](VertexId v) { return is_from[v.index()] != 0; });
+  const auto common = std::ranges::find_if(to, [&](VertexId v) { return std::ranges::binary_search(from, v); });
   if (common == to.end()) return;
   throw CaseError("case", fmt::format("{}.to", kField),
                   fmt::format("vertex {} at {} mm, which is also in `from`", common->value,
@@ -155,8 +138,8 @@ void spread(const TetMesh& mesh, std::span<const double> volumes_mm3, std::vecto
 
 FibreDirections fibre_directions(const TetMesh& mesh, const FibreField& field, int most_iterations) {
   INCISE_REQUIRE(find_problems(mesh).empty(), "expected a sound mesh");
-  const std::vector<VertexId> from = selected(mesh, field.from, "from");
-  const std::vector<VertexId> to = selected(mesh, field.to, "to");
+  const std::vector<VertexId> from = selected_vertices(mesh, field.from, fmt::format("{}.from", kField));
+  const std::vector<VertexId> to = selected_vertices(mesh, field.to, fmt::format("{}.to", kField));
   require_disjoint(mesh, from, to);
 
   FibreDirections result;

@@ -27,6 +27,13 @@ constexpr double kDeepestStartMm = 2.0;
 constexpr double kLeastStoppedShare = 1e-10;
 constexpr const char* kAxisNames = "xyz";
 
+CaseError nothing_selected(const TetMesh& mesh, const std::string& field, const char* what) {
+  const Box3 box = bounding_box(mesh.vertices);
+  return CaseError(kWhere, field, fmt::format("a region without any {} of the mesh", what),
+                   fmt::format("one with at least one {}", what),
+                   fmt::format("The mesh fills the box {} to {} mm", text_of(box.min()), text_of(box.max())));
+}
+
 class ConstraintApplier {
  public:
   ConstraintApplier(TissueModel& model, std::vector<BoundaryFace> skin) : model_(model), skin_(std::move(skin)) {}
@@ -46,22 +53,7 @@ class ConstraintApplier {
   }
 
   [[nodiscard]] std::vector<VertexId> selected(const Region& region) const {
-    std::vector<VertexId> vertices;
-    try {
-      vertices = select(model_.mesh, region);
-    } catch (const InvalidArgument& problem) {
-      throw CaseError(kWhere, field("where"), "an unusable region", "one that can be applied to this mesh",
-                      problem.as_hint());
-    }
-    if (vertices.empty()) throw nothing_selected("vertex");
-    return vertices;
-  }
-
-  [[nodiscard]] CaseError nothing_selected(const char* what) const {
-    const Box3 box = bounding_box(model_.mesh.vertices);
-    return CaseError(kWhere, field("where"), fmt::format("a region without any {} of the mesh", what),
-                     fmt::format("one with at least one {}", what),
-                     fmt::format("The mesh fills the box {} to {} mm", text_of(box.min()), text_of(box.max())));
+    return selected_vertices(model_.mesh, region, field("where"));
   }
 
   void hold(const std::vector<VertexId>& vertices, const std::array<bool, 3>& axes, const Vec3& displacement) {
@@ -174,7 +166,7 @@ class ConstraintApplier {
     require_finite("traction_kpa", traction.traction_kpa);
     static_cast<void>(selected(traction.where));  // throws if the region is wrong
     const std::vector<VertexLoad> loads = vertex_loads(model_.mesh, skin_, traction);
-    if (loads.empty()) throw nothing_selected("boundary face");
+    if (loads.empty()) throw nothing_selected(model_.mesh, field("where"), "boundary face");
     for (const VertexLoad& load : loads) {
       model_.dead_load_mn[load.vertex.index()] += load.force_mn;
       model_.applied_load_mn[index_] += load.force_mn;
@@ -197,6 +189,17 @@ class ConstraintApplier {
 };
 
 }  // namespace
+
+std::vector<VertexId> selected_vertices(const TetMesh& mesh, const Region& region, const std::string& field) {
+  std::vector<VertexId> vertices;
+  try {
+    vertices = select(mesh, region);
+  } catch (const InvalidArgument& problem) {
+    throw CaseError(kWhere, field, "an unusable region", "one that can be applied to this mesh", problem.as_hint());
+  }
+  if (vertices.empty()) throw nothing_selected(mesh, field, "vertex");
+  return vertices;
+}
 
 void apply_constraints(TissueModel& model, const Vec3& gravity_mm_s2) {
   if (!gravity_mm_s2.allFinite()) {
