@@ -30,12 +30,6 @@ void check(const MotionSettings& settings) {
                  fmt::format("expected relative_tolerance in (0, 1), found {}", settings.relative_tolerance));
 }
 
-double norm(std::span<const Vec3> vectors, std::span<const Vec3> is_free) {
-  double squared = 0.0;
-  for (std::size_t v = 0; v < vectors.size(); ++v) squared += vectors[v].cwiseProduct(is_free[v]).squaredNorm();
-  return std::sqrt(squared);
-}
-
 }  // namespace
 
 struct MotionWorkspace::Data {
@@ -105,8 +99,8 @@ class Step {
         break;
       }
       find_forces(is_first ? Tangent::FrozenRotations : Tangent::Exact, is_first);
-      const double size = norm(scratch_.right, free_);
-      if (is_first) scale = std::max(size, least_scale());
+      const double size = free_norm(scratch_.right, free_);
+      if (is_first) scale = std::max(size, least_force_mn(model_));
       if (!std::isfinite(size)) break;
       report.relative_residual = size / scale;
       if (is_first ? size == 0.0 && !is_carried_ : report.relative_residual <= settings_.relative_tolerance) {
@@ -180,13 +174,6 @@ class Step {
       double* block = scratch_.matrix.block(model_.pattern->diagonal[v]);
       for (std::size_t i = 0; i < 3; ++i) block[4 * i] += mass * (1.0 / h + settings_.rayleigh_alpha) / h;
     }
-  }
-
-  /// Returns the lower limit of the scale for residuals, mN: a force far below any that deforms the body, but above
-  /// rounding.
-  [[nodiscard]] double least_scale() const {
-    const double size = bounding_box(model_.mesh.vertices).diagonal().norm();
-    return 1e-6 * model_.material.youngs_modulus_kpa * size * size;
   }
 
   /// Solves for the increment; if the exact tangent is not positive definite, with the projected one.

@@ -2,6 +2,8 @@
 
 #include "mechanics/support.hpp"
 
+#include <cmath>
+
 namespace incise {
 
 Points free_axes(const TissueModel& model, const TissueState& state) {
@@ -16,6 +18,17 @@ Points free_axes(const TissueModel& model, const TissueState& state) {
     }
   }
   return is_free;
+}
+
+double free_norm(std::span<const Vec3> vectors, std::span<const Vec3> is_free) {
+  double squared = 0.0;
+  for (std::size_t v = 0; v < vectors.size(); ++v) squared += vectors[v].cwiseProduct(is_free[v]).squaredNorm();
+  return std::sqrt(squared);
+}
+
+double least_force_mn(const TissueModel& model) {
+  const double size = bounding_box(model.mesh.vertices).diagonal().norm();
+  return 1e-6 * model.material.youngs_modulus_kpa * size * size;
 }
 
 std::vector<Vec3> reactions(const TissueModel& model, const TissueState& state, Workers& workers) {

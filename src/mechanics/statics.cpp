@@ -135,25 +135,17 @@ class Equilibrium {
     return forces_;
   }
 
-  [[nodiscard]] double residual() const {
-    double squared = 0.0;
-    for (std::size_t v = 0; v < forces_.size(); ++v) squared += forces_[v].cwiseProduct(free_[v]).squaredNorm();
-    return std::sqrt(squared);
-  }
+  [[nodiscard]] double residual() const { return free_norm(forces_, free_); }
 
   /// Returns the scale of the residual: the largest of reactions, loads, and a force too small to deform the body.
   [[nodiscard]] double scale() const {
     double reactions = 0.0;
-    double loads = 0.0;
     for (std::size_t v = 0; v < forces_.size(); ++v) {
       for (int i = 0; i < 3; ++i) {
         if (model_.is_fixed[v][static_cast<std::size_t>(i)]) reactions += forces_[v][i] * forces_[v][i];
       }
-      loads += load_[v].cwiseProduct(free_[v]).squaredNorm();
     }
-    const double size = bounding_box(model_.mesh.vertices).diagonal().norm();
-    const double floor = 1e-6 * model_.material.youngs_modulus_kpa * size * size;
-    return std::max({std::sqrt(reactions), std::sqrt(loads), floor});
+    return std::max({std::sqrt(reactions), free_norm(load_, free_), least_force_mn(model_)});
   }
 
   [[nodiscard]] double potential() const {
