@@ -241,10 +241,9 @@ std::vector<double> load_tool(const TissueModel& model, const CutState& state, c
 /// Updates scratch.is_orphan: at the vertices of tets removed since the last call; in the first call, at all vertices.
 void find_orphans(const TissueModel& model, const CutState& state, CutWorkspace::Data& scratch) {
   const auto has_live_tet = [&](std::size_t v) {
-    const auto begin = model.vertex_tets.begin() + model.vertex_tet_start[v];
-    const auto end = model.vertex_tets.begin() + model.vertex_tet_start[v + 1];
-    return std::any_of(
-        begin, end, [&](std::int32_t place) { return state.tissue.is_live[static_cast<std::size_t>(place / 4)] != 0; });
+    return std::ranges::any_of(model.corners_at(v), [&](std::int32_t place) {
+      return state.tissue.is_live[static_cast<std::size_t>(place / 4)] != 0;
+    });
   };
   if (scratch.is_orphan.empty()) {
     scratch.is_orphan.resize(model.mesh.vertices.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/geometry/mesh_splits.hpp>
+#include <incise/mechanics/block_matrix.hpp>
 
 #include <array>
 #include <cstdint>
@@ -15,10 +16,7 @@ struct FaceAdjacency {
   std::vector<std::int32_t> start;  ///< M + 1: the first item of each tet in `tets`
   std::vector<std::int32_t> tets;   ///< the neighbours of all tets, one tet after the other
   /// Returns the neighbours of a tet.
-  [[nodiscard]] std::span<const std::int32_t> of(std::size_t tet) const {
-    const auto first = static_cast<std::size_t>(start[tet]), last = static_cast<std::size_t>(start[tet + 1]);
-    return std::span(tets).subspan(first, last - first);
-  }
+  [[nodiscard]] std::span<const std::int32_t> of(std::size_t tet) const { return list_of(start, tets, tet); }
 };
 /// Returns the face adjacency of a mesh. O(M log M).
 [[nodiscard]] FaceAdjacency face_adjacency(const TetMesh& mesh);

@@ -63,8 +63,8 @@ class Splitter {
     }
     std::set<TetId> tets;
     for (const VertexId v : vertices_) {
-      for (auto i = model_.vertex_tet_start[v.index()]; i < model_.vertex_tet_start[v.index() + 1]; ++i) {
-        const auto tet = static_cast<std::size_t>(model_.vertex_tets[static_cast<std::size_t>(i)] / 4);
+      for (const std::int32_t place : model_.corners_at(v.index())) {
+        const auto tet = static_cast<std::size_t>(place / 4);
         if (state_.tissue.is_live[tet] != 0) tets.emplace(tet);
       }
     }

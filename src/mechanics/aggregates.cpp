@@ -43,10 +43,8 @@ Aggregates bisect(std::span<const Vec3> positions, std::size_t per_aggregate) {
   const std::size_t groups = (positions.size() + per_aggregate - 1) / per_aggregate;
   split(positions, result.vertices, 0, positions.size(), groups, result.start);
   for (std::size_t a = 0; a < result.count(); ++a) {
-    for (auto i = result.start[a]; i < result.start[a + 1]; ++i) {
-      const std::int32_t v = result.vertices[static_cast<std::size_t>(i)];
+    for (const std::int32_t v : result.members(a))
       result.of_vertex[static_cast<std::size_t>(v)] = static_cast<std::int32_t>(a);
-    }
   }
   return result;
 }

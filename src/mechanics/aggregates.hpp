@@ -1,6 +1,6 @@
 #pragma once
 
-#include <incise/geometry/types.hpp>
+#include <incise/mechanics/block_matrix.hpp>
 
 #include <cstdint>
 #include <span>
@@ -14,6 +14,9 @@ struct Aggregates {
   std::vector<std::int32_t> vertices;   ///< N, ascending within an aggregate
   std::vector<std::int32_t> of_vertex;  ///< N
   [[nodiscard]] std::size_t count() const { return start.empty() ? 0 : start.size() - 1; }
+  [[nodiscard]] std::span<const std::int32_t> members(std::size_t aggregate) const {
+    return list_of(start, vertices, aggregate);
+  }
 };
 
 /// Divides the points into ceil(N / per_aggregate) aggregates by recursive bisection across the longest side of their

@@ -44,10 +44,8 @@ void CoarseCycle<Real>::sweep_forward(std::span<const Real> c) {
   for (std::size_t i = 0; i < aggregates(); ++i) {
     const Eight<Real> force = times(basis_transposed, i, c.data() + 6 * i);
     const auto first = static_cast<std::size_t>(row_start[i]);
-    const auto begin = column.begin() + row_start[i];
-    const auto below = static_cast<std::size_t>(
-        std::lower_bound(begin, column.begin() + row_start[i + 1], static_cast<std::int32_t>(i)) - begin);
-    sum_blocks(blocks.data() + kCoarseBlock * first, column.data() + first, below, motion_.data(), sum.data());
+    sum_blocks(blocks.data() + kCoarseBlock * first, column.data() + first, slot_from(i, i) - first, motion_.data(),
+               sum.data());
     for (std::size_t k = 0; k < 8; ++k) {
       right_[8 * i + k] = force[k];
       motion_[8 * i + k] = force[k] - sum[k];
@@ -56,10 +54,7 @@ void CoarseCycle<Real>::sweep_forward(std::span<const Real> c) {
   // Each aggregate's equation held at its turn: the residual is what later aggregates added.
   std::fill(group_force_.begin(), group_force_.end(), Real{0});
   for (std::size_t i = 0; i < aggregates(); ++i) {
-    const auto begin = column.begin() + row_start[i];
-    const auto end = column.begin() + row_start[i + 1];
-    const auto above =
-        static_cast<std::size_t>(std::upper_bound(begin, end, static_cast<std::int32_t>(i)) - column.begin());
+    const std::size_t above = slot_from(i, i + 1);
     sum_blocks(blocks.data() + kCoarseBlock * above, column.data() + above,
                static_cast<std::size_t>(row_start[i + 1]) - above, motion_.data(), sum.data());
     const Eight<Real> left = times(lift_transposed, i, sum.data());

@@ -2,6 +2,7 @@
 
 #include <incise/core/workers.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,6 +31,13 @@ struct CoarseCycle {
   std::vector<Real> top;  ///< dense inverse of the third level: 6 groups x 6 groups, symmetric
 
   [[nodiscard]] std::size_t aggregates() const { return row_start.size() - 1; }
+  /// Returns the first slot in a row at or after the block of an aggregate.
+  [[nodiscard]] std::size_t slot_from(std::size_t row, std::size_t aggregate) const {
+    const auto begin = column.begin() + row_start[row];
+    const auto end = column.begin() + row_start[row + 1];
+    return static_cast<std::size_t>(std::lower_bound(begin, end, static_cast<std::int32_t>(aggregate)) -
+                                    column.begin());
+  }
   /// Computes y = C c; six numbers per aggregate.
   void apply(std::span<const Real> c, std::span<Real> y, Workers& workers);
 

@@ -25,6 +25,12 @@ constexpr std::size_t kMaxGroups = 512;
 constexpr double kLeastMotionShare = 1e-8;
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
+using DenseBlock = Eigen::Map<Mat6, 0, Eigen::OuterStride<>>;
+
+/// Returns the block (i, j), 6 x 6, of an n x n matrix that is stored by columns.
+DenseBlock block_at(std::vector<double>& dense, std::size_t n, std::size_t i, std::size_t j) {
+  return DenseBlock(dense.data() + 6 * n * j + 6 * i, Eigen::OuterStride<>(static_cast<Eigen::Index>(n)));
+}
 
 /// Returns, as columns, the independent combinations of six motions, of unit size, from the Gram matrix of the motions.
 /// Columns that correspond to no motion are zero.
@@ -83,17 +89,16 @@ CoarseSpace::CoarseSpace(std::span<const Vec3> positions, std::size_t per_aggreg
       arm_(positions.size()),
       free_(positions.size(), Vec3::Ones()) {
   for (std::size_t a = 0; a < aggregates_.count(); ++a) {
-    const auto begin = aggregates_.vertices.begin() + aggregates_.start[a];
-    const auto end = aggregates_.vertices.begin() + aggregates_.start[a + 1];
+    const auto members = aggregates_.members(a);
     Vec3 center = Vec3::Zero();
-    for (auto v = begin; v != end; ++v) center += positions[static_cast<std::size_t>(*v)];
-    center /= static_cast<double>(end - begin);
+    for (const std::int32_t v : members) center += positions[static_cast<std::size_t>(v)];
+    center /= static_cast<double>(members.size());
     double squared = 0.0;
-    for (auto v = begin; v != end; ++v) squared += (positions[static_cast<std::size_t>(*v)] - center).squaredNorm();
-    const double radius = std::sqrt(squared / static_cast<double>(end - begin));
-    for (auto v = begin; v != end; ++v) {
-      const Vec3 offset = positions[static_cast<std::size_t>(*v)] - center;
-      arm_[static_cast<std::size_t>(*v)] = radius > 0.0 ? Vec3(offset / radius) : Vec3::Zero();
+    for (const std::int32_t v : members) squared += (positions[static_cast<std::size_t>(v)] - center).squaredNorm();
+    const double radius = std::sqrt(squared / static_cast<double>(members.size()));
+    for (const std::int32_t v : members) {
+      const Vec3 offset = positions[static_cast<std::size_t>(v)] - center;
+      arm_[static_cast<std::size_t>(v)] = radius > 0.0 ? Vec3(offset / radius) : Vec3::Zero();
     }
     center_[a] = center;
     radius_[a] = radius;
@@ -124,8 +129,8 @@ template <class Target>
 void CoarseSpace::project_rows(const BlockMatrix& matrix, std::size_t aggregate, const Target& target) const {
   using RowBlock = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   std::vector<std::pair<std::int32_t, Modes>> sums;  // of A_vw P_w over the vertices w of each neighbouring aggregate
-  for (auto i = aggregates_.start[aggregate]; i < aggregates_.start[aggregate + 1]; ++i) {
-    const auto v = static_cast<std::size_t>(aggregates_.vertices[static_cast<std::size_t>(i)]);
+  for (const std::int32_t member : aggregates_.members(aggregate)) {
+    const auto v = static_cast<std::size_t>(member);
     sums.clear();
     for (auto slot = matrix.pattern->row_start[v]; slot < matrix.pattern->row_start[v + 1]; ++slot) {
       const auto w = static_cast<std::size_t>(matrix.pattern->column[static_cast<std::size_t>(slot)]);
@@ -141,8 +146,8 @@ void CoarseSpace::project_rows(const BlockMatrix& matrix, std::size_t aggregate,
 
 CoarseSpace::Mat6 CoarseSpace::motions_of(std::size_t aggregate) const {
   Mat6 gram = Mat6::Zero();
-  for (auto i = aggregates_.start[aggregate]; i < aggregates_.start[aggregate + 1]; ++i) {
-    const Modes p = modes(static_cast<std::size_t>(aggregates_.vertices[static_cast<std::size_t>(i)]));
+  for (const std::int32_t v : aggregates_.members(aggregate)) {
+    const Modes p = modes(static_cast<std::size_t>(v));
     gram.noalias() += p.transpose() * p;
   }
   return independent_motions(gram);
@@ -150,14 +155,9 @@ CoarseSpace::Mat6 CoarseSpace::motions_of(std::size_t aggregate) const {
 
 /// Each 6 x 6 block B_ij becomes Tᵀ_i B_ij T_j, for the blocks on and below the diagonal.
 void CoarseSpace::change_basis(const std::vector<Mat6>& basis, Workers& workers) {
-  const std::size_t n = size();
-  using Block = Eigen::Map<Mat6, 0, Eigen::OuterStride<>>;
-  const auto block = [&](std::size_t i, std::size_t j) {
-    return Block(dense_.data() + 6 * n * j + 6 * i, Eigen::OuterStride<>(static_cast<Eigen::Index>(n)));
-  };
   workers.for_each(aggregates_.count(), 8, [&](std::size_t j) {
     for (std::size_t i = j; i < aggregates_.count(); ++i) {
-      Block b = block(i, j);
+      DenseBlock b = block_at(dense_, size(), i, j);
       if (b.isZero(0.0)) continue;
       b = (basis[i].transpose() * b * basis[j]).eval();
     }
@@ -169,10 +169,8 @@ void CoarseSpace::refresh_dense(const BlockMatrix& matrix, Workers& workers) {
   dense_.resize(n * n);
   workers.for_each(aggregates_.count(), 4, [&](std::size_t a) {
     std::fill_n(dense_.begin() + static_cast<std::ptrdiff_t>(6 * n * a), 6 * n, 0.0);
-    project_rows(matrix, a, [&](std::int32_t other) {
-      return Eigen::Map<Mat6, 0, Eigen::OuterStride<>>(dense_.data() + 6 * n * a + 6 * static_cast<std::size_t>(other),
-                                                       Eigen::OuterStride<>(static_cast<Eigen::Index>(n)));
-    });
+    project_rows(matrix, a,
+                 [&](std::int32_t other) { return block_at(dense_, n, static_cast<std::size_t>(other), a); });
   });
 
   std::vector<Mat6> basis(aggregates_.count());
@@ -196,12 +194,9 @@ void CoarseSpace::connect_aggregates(const BlockPattern& pattern) {
   std::vector<std::int32_t> others;
   for (std::size_t a = 0; a < aggregates_.count(); ++a) {
     others.clear();
-    for (auto i = aggregates_.start[a]; i < aggregates_.start[a + 1]; ++i) {
-      const auto v = static_cast<std::size_t>(aggregates_.vertices[static_cast<std::size_t>(i)]);
-      for (auto slot = pattern.row_start[v]; slot < pattern.row_start[v + 1]; ++slot) {
-        others.push_back(
-            aggregates_.of_vertex[static_cast<std::size_t>(pattern.column[static_cast<std::size_t>(slot)])]);
-      }
+    for (const std::int32_t v : aggregates_.members(a)) {
+      for (const std::int32_t w : pattern.columns_of(static_cast<std::size_t>(v)))
+        others.push_back(aggregates_.of_vertex[static_cast<std::size_t>(w)]);
     }
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
@@ -214,21 +209,17 @@ void CoarseSpace::connect_aggregates(const BlockPattern& pattern) {
 
 /// Computes the blocks of one aggregate's row, each still transposed.
 void CoarseSpace::project_blocks(const BlockMatrix& matrix, std::size_t aggregate) {
-  const auto begin = cycle_.column.begin() + cycle_.row_start[aggregate];
-  const auto end = cycle_.column.begin() + cycle_.row_start[aggregate + 1];
-  const auto own = blocks_.begin() + cycle_.row_start[aggregate];
-  std::fill_n(own, end - begin, Mat6(Mat6::Zero()));
-  project_rows(matrix, aggregate,
-               [&](std::int32_t other) -> Mat6& { return own[std::lower_bound(begin, end, other) - begin]; });
+  std::fill(blocks_.begin() + cycle_.row_start[aggregate], blocks_.begin() + cycle_.row_start[aggregate + 1],
+            Mat6(Mat6::Zero()));
+  project_rows(matrix, aggregate, [&](std::int32_t other) -> Mat6& {
+    return blocks_[cycle_.slot_from(aggregate, static_cast<std::size_t>(other))];
+  });
 }
 
 /// Finds a basis of the motions that an aggregate can make, in which its diagonal block is 1.
 void CoarseSpace::find_basis(std::size_t aggregate) {
   const Mat6 motions = motions_of(aggregate);
-  const auto begin = cycle_.column.begin() + cycle_.row_start[aggregate];
-  const auto end = cycle_.column.begin() + cycle_.row_start[aggregate + 1];
-  const auto slot = std::lower_bound(begin, end, static_cast<std::int32_t>(aggregate)) - cycle_.column.begin();
-  Mat6 diagonal = motions.transpose() * blocks_[static_cast<std::size_t>(slot)] * motions;
+  Mat6 diagonal = motions.transpose() * blocks_[cycle_.slot_from(aggregate, aggregate)] * motions;
   Mat6 into_motions = Mat6::Zero();  // left inverse of `motions`, whose columns are orthogonal
   for (int i = 0; i < 6; ++i) {
     if (motions.col(i).isZero(0.0)) {
@@ -262,15 +253,13 @@ CoarseSpace::Mat6 CoarseSpace::rigid_lift(std::size_t aggregate) const {
   const auto group = static_cast<std::size_t>(groups_.of_vertex[aggregate]);
   Vec3 middle = Vec3::Zero();
   const auto members = groups_.start[group + 1] - groups_.start[group];
-  const auto for_members = [&](const auto& body) {
-    for (auto i = groups_.start[group]; i < groups_.start[group + 1]; ++i) {
-      body(static_cast<std::size_t>(groups_.vertices[static_cast<std::size_t>(i)]));
-    }
-  };
-  for_members([&](std::size_t a) { middle += center_[a] / members; });
+  for (const std::int32_t member : groups_.members(group))
+    middle += center_[static_cast<std::size_t>(member)] / members;
   double squared = 0.0;
-  for_members(
-      [&](std::size_t a) { squared += ((center_[a] - middle).squaredNorm() + radius_[a] * radius_[a]) / members; });
+  for (const std::int32_t member : groups_.members(group)) {
+    const auto a = static_cast<std::size_t>(member);
+    squared += ((center_[a] - middle).squaredNorm() + radius_[a] * radius_[a]) / members;
+  }
   const double radius = squared > 0.0 ? std::sqrt(squared) : 1.0;
   const Vec3 arm = (center_[aggregate] - middle) / radius;
   Mat6 lift = Mat6::Identity();
@@ -283,15 +272,12 @@ CoarseSpace::Mat6 CoarseSpace::rigid_lift(std::size_t aggregate) const {
 void CoarseSpace::find_lifts() {
   for (std::size_t a = 0; a < aggregates_.count(); ++a) lift_[a] = rigid_lift(a);
   for (std::size_t group = 0; group < groups_.count(); ++group) {
-    const auto first = static_cast<std::size_t>(groups_.start[group]);
-    const auto members =
-        std::span(groups_.vertices).subspan(first, static_cast<std::size_t>(groups_.start[group + 1]) - first);
     Mat6 gram = Mat6::Zero();
-    for (const std::int32_t a : members) {
+    for (const std::int32_t a : groups_.members(group)) {
       gram.noalias() += lift_[static_cast<std::size_t>(a)].transpose() * lift_[static_cast<std::size_t>(a)];
     }
     const Mat6 basis = independent_motions(gram);
-    for (const std::int32_t a : members) {
+    for (const std::int32_t a : groups_.members(group)) {
       lift_[static_cast<std::size_t>(a)] = (lift_[static_cast<std::size_t>(a)] * basis).eval();
     }
   }
@@ -307,9 +293,7 @@ void CoarseSpace::project_groups() {
       const auto b = static_cast<std::size_t>(cycle_.column[static_cast<std::size_t>(slot)]);
       const auto column = static_cast<std::size_t>(cycle_.group[b]);
       if (column > row) continue;
-      Eigen::Map<Mat6, 0, Eigen::OuterStride<>>(cycle_.top.data() + 6 * n * column + 6 * row,
-                                                Eigen::OuterStride<>(static_cast<Eigen::Index>(n))) +=
-          lift_[a].transpose() * blocks_[static_cast<std::size_t>(slot)] * lift_[b];
+      block_at(cycle_.top, n, row, column) += lift_[a].transpose() * blocks_[static_cast<std::size_t>(slot)] * lift_[b];
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -328,13 +312,8 @@ void CoarseSpace::refresh_cycle(const BlockMatrix& matrix, Workers& workers) {
   workers.for_each(aggregates_.count(), 4, [&](std::size_t a) { change_block_basis(a); });
   find_lifts();
   project_groups();
-  for (std::size_t a = 0; a < aggregates_.count(); ++a) {
-    const auto row = cycle_.column.begin() + cycle_.row_start[a];
-    const auto slot =
-        std::lower_bound(row, cycle_.column.begin() + cycle_.row_start[a + 1], static_cast<std::int32_t>(a)) -
-        cycle_.column.begin();
-    blocks_[static_cast<std::size_t>(slot)].setZero();  // the 1 is implied in Gauss-Seidel
-  }
+  for (std::size_t a = 0; a < aggregates_.count(); ++a)
+    blocks_[cycle_.slot_from(a, a)].setZero();  // the 1 is implied in Gauss-Seidel
   cycle_.blocks = packed(blocks_, false);
   cycle_.basis = packed(basis_, false);
   cycle_.basis_transposed = packed(basis_, true);

@@ -156,13 +156,10 @@ void add_law_response(const TissueModel& model, TissueState& state, std::span<Ve
   // is fixed.
   workers.for_each(model.mesh.vertices.size(), kVerticesPerChunk, [&](std::size_t v) {
     Vec3 force = Vec3::Zero();
-    for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
-      const auto entry = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)]);
-      const std::size_t tet = entry / 4;
-      if (state.is_live[tet] == 0) continue;
-      force -= filled_volume_mm3(model, state, tet) * (tets.stresses()[tet] * model.gradients[tet][entry % 4]);
-      if (stiffness != nullptr) tets.add_stiffness(tet, entry % 4, *stiffness);
-    }
+    for_live_corners(model, state, v, [&](std::size_t tet, std::size_t corner) {
+      force -= filled_volume_mm3(model, state, tet) * (tets.stresses()[tet] * model.gradients[tet][corner]);
+      if (stiffness != nullptr) tets.add_stiffness(tet, corner, *stiffness);
+    });
     forces[v] += force;
   });
   if (stiffness != nullptr) tets.add_averaged_stiffness(*stiffness);

@@ -31,12 +31,10 @@ std::vector<int> color_runs(const TissueModel& model, const Aggregates& runs) {
   std::vector<char> is_taken;
   for (std::size_t run = 0; run < runs.count(); ++run) {
     is_taken.assign(is_taken.size(), 0);
-    for (auto i = runs.start[run]; i < runs.start[run + 1]; ++i) {
-      const auto tet = static_cast<std::size_t>(runs.vertices[static_cast<std::size_t>(i)]);
-      for (const VertexId v : model.mesh.tets[tet]) {
-        for (auto k = model.vertex_tet_start[v.index()]; k < model.vertex_tet_start[v.index() + 1]; ++k) {
-          const std::int32_t other = model.vertex_tets[static_cast<std::size_t>(k)] / 4;
-          const int taken = color[static_cast<std::size_t>(runs.of_vertex[static_cast<std::size_t>(other)])];
+    for (const std::int32_t tet : runs.members(run)) {
+      for (const VertexId v : model.mesh.tets[static_cast<std::size_t>(tet)]) {
+        for (const std::int32_t other : model.corners_at(v.index())) {
+          const int taken = color[static_cast<std::size_t>(runs.of_vertex[static_cast<std::size_t>(other / 4)])];
           if (taken >= 0) is_taken[static_cast<std::size_t>(taken)] = 1;
         }
       }
@@ -121,8 +119,8 @@ std::shared_ptr<const TetBatches> make_tet_batches(const TissueModel& model) {
   std::vector<std::int32_t> color_start;
   for (std::size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || color[order[i]] != color[order[i - 1]]) color_start.push_back(static_cast<std::int32_t>(i));
-    runs.emplace_back(groups.vertices.begin() + groups.start[order[i]],
-                      groups.vertices.begin() + groups.start[order[i] + 1]);
+    const auto tets = groups.members(order[i]);
+    runs.emplace_back(tets.begin(), tets.end());
   }
   color_start.push_back(static_cast<std::int32_t>(runs.size()));
   return batches_of(model, runs, std::move(color_start));

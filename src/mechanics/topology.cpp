@@ -43,10 +43,9 @@ std::shared_ptr<const BlockPattern> make_pattern(std::size_t count, const ListNe
   std::vector<std::int32_t> neighbours;
   for (std::size_t v = 0; v < count; ++v) {
     if (known != nullptr && known->is_new[v] == 0) {
-      const std::vector<std::int32_t>& start = known->pattern.row_start;
-      pattern->diagonal.push_back(pattern->row_start.back() + known->pattern.diagonal[v] - start[v]);
-      pattern->column.insert(pattern->column.end(), known->pattern.column.begin() + start[v],
-                             known->pattern.column.begin() + start[v + 1]);
+      const auto row = known->pattern.columns_of(v);
+      pattern->diagonal.push_back(pattern->row_start.back() + known->pattern.diagonal[v] - known->pattern.row_start[v]);
+      pattern->column.insert(pattern->column.end(), row.begin(), row.end());
       pattern->row_start.push_back(static_cast<std::int32_t>(pattern->column.size()));
       continue;
     }
@@ -64,34 +63,29 @@ std::shared_ptr<const BlockPattern> make_pattern(std::size_t count, const ListNe
 
 std::shared_ptr<const BlockPattern> make_stars(const TissueModel& model, const KnownRows* known = nullptr) {
   const auto list_star = [&](std::size_t v, std::vector<std::int32_t>& neighbours) {
-    for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
-      const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
-      for (const VertexId w : model.mesh.tets[tet]) neighbours.push_back(w.value);
+    for (const std::int32_t entry : model.corners_at(v)) {
+      for (const VertexId w : model.mesh.tets[static_cast<std::size_t>(entry / 4)]) neighbours.push_back(w.value);
     }
   };
   return make_pattern(model.mesh.vertices.size(), list_star, known);
 }
 
 std::shared_ptr<const BlockPattern> make_stars_of_stars(const BlockPattern& stars) {
-  const auto append_star = [&](std::size_t v, std::vector<std::int32_t>& list) {
-    list.insert(list.end(), stars.column.begin() + stars.row_start[v], stars.column.begin() + stars.row_start[v + 1]);
-  };
   return make_pattern(stars.rows(), [&](std::size_t v, std::vector<std::int32_t>& neighbours) {
-    for (auto i = stars.row_start[v]; i < stars.row_start[v + 1]; ++i) {
-      append_star(static_cast<std::size_t>(stars.column[static_cast<std::size_t>(i)]), neighbours);
+    for (const std::int32_t w : stars.columns_of(v)) {
+      const auto star = stars.columns_of(static_cast<std::size_t>(w));
+      neighbours.insert(neighbours.end(), star.begin(), star.end());
     }
   });
 }
 
 /// Finds the slots of the blocks (a, b) of a tet for one corner a; they lie in the row of that corner.
 void find_slots(TissueModel& model, std::size_t tet, std::size_t a) {
-  const std::vector<std::int32_t>& column = model.pattern->column;
   const std::size_t row = model.mesh.tets[tet][a].index();
-  const auto begin = column.begin() + model.pattern->row_start[row];
-  const auto end = column.begin() + model.pattern->row_start[row + 1];
+  const auto columns = model.pattern->columns_of(row);
   for (std::size_t b = 0; b < 4; ++b) {
-    const auto at = std::lower_bound(begin, end, model.mesh.tets[tet][b].value);
-    model.tet_slots[tet][4 * a + b] = static_cast<std::int32_t>(at - column.begin());
+    const auto at = std::ranges::lower_bound(columns, model.mesh.tets[tet][b].value);
+    model.tet_slots[tet][4 * a + b] = model.pattern->row_start[row] + static_cast<std::int32_t>(at - columns.begin());
   }
 }
 

@@ -74,8 +74,8 @@ struct TwoLevelPcg::Data {
       double rz = 0.0;
       for (std::size_t a = begin; a < end; ++a) {
         Vec6 sum = Vec6::Zero();
-        for (auto i = coarse.aggregates().start[a]; i < coarse.aggregates().start[a + 1]; ++i) {
-          const auto v = static_cast<std::size_t>(coarse.aggregates().vertices[static_cast<std::size_t>(i)]);
+        for (const std::int32_t member : coarse.aggregates().members(a)) {
+          const auto v = static_cast<std::size_t>(member);
           x[v] += alpha * p[v];
           r[v] -= alpha * q[v];
           z[v].noalias() = inverse_diagonal[v] * r[v];
@@ -95,8 +95,8 @@ struct TwoLevelPcg::Data {
     for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t a = begin; a < end; ++a) {
         const double* y = corrected.data() + 6 * a;
-        for (auto i = coarse.aggregates().start[a]; i < coarse.aggregates().start[a + 1]; ++i) {
-          const auto v = static_cast<std::size_t>(coarse.aggregates().vertices[static_cast<std::size_t>(i)]);
+        for (const std::int32_t member : coarse.aggregates().members(a)) {
+          const auto v = static_cast<std::size_t>(member);
           p[v] = z[v] + coarse.prolonged(v, y) + beta * p[v];
         }
       }

@@ -158,15 +158,11 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
   });
   workers.for_each(forces.size(), kVerticesPerChunk, [&](std::size_t v) {
     Vec3 force = Vec3::Zero();
-    for (auto i = model.vertex_tet_start[v]; i < model.vertex_tet_start[v + 1]; ++i) {
-      const auto entry = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)]);
-      const std::size_t tet = entry / 4;
-      const std::size_t corner = entry % 4;
-      if (state.is_live[tet] == 0) continue;
+    for_live_corners(model, state, v, [&](std::size_t tet, std::size_t corner) {
       const Response& r = responses[tet];
       const auto& g = model.gradients[tet];
       force -= filled_volume_mm3(model, state, tet) * (r.f * (r.stress * g[corner]));
-      if (stiffness == nullptr) continue;
+      if (stiffness == nullptr) return;
       for (std::size_t b = 0; b < 4; ++b) {  // (b, a) as the transpose of (a, b): symmetric bit for bit
         const std::size_t low = std::min(corner, b);
         const std::size_t high = std::max(corner, b);
@@ -176,7 +172,7 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
         Eigen::Map<RowMajor>(stiffness->block(model.tet_slots[tet][4 * corner + b])) +=
             filled_volume_mm3(model, state, tet) * block;
       }
-    }
+    });
     forces[v] += force;
   });
 }

@@ -1,6 +1,7 @@
 #include "mechanics/volume_averages.hpp"
 
 #include "mechanics/chunks.hpp"
+#include "mechanics/elastic_response.hpp"
 
 #include <algorithm>
 
@@ -11,15 +12,13 @@ namespace {
 void gather_gradient(const TissueModel& model, const TissueState& state, std::span<const Mat3> gradients, std::size_t n,
                      std::span<const std::int32_t> star, std::span<Vec3> result) {
   std::fill(result.begin(), result.end(), Vec3::Zero());
-  for (auto i = model.vertex_tet_start[n]; i < model.vertex_tet_start[n + 1]; ++i) {
-    const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
-    if (state.is_live[tet] == 0) continue;
+  for_live_corners(model, state, n, [&](std::size_t tet, std::size_t) {
     const double share = 0.25 * filled_volume_mm3(model, state, tet);
     for (std::size_t c = 0; c < 4; ++c) {
       const auto at = std::lower_bound(star.begin(), star.end(), model.mesh.tets[tet][c].value);
       result[static_cast<std::size_t>(at - star.begin())] += share * (gradients[tet] * model.gradients[tet][c]);
     }
-  }
+  });
 }
 
 }  // namespace
@@ -34,14 +33,12 @@ VolumeAverages::VolumeAverages(const TissueModel& model, const TissueState& stat
     double volume = 0.0;
     double change = 0.0;
     double compliance = 0.0;  // infinite if a tet has λ = 0: it resists no pressure, so neither does the vertex
-    for (auto i = model.vertex_tet_start[n]; i < model.vertex_tet_start[n + 1]; ++i) {
-      const auto tet = static_cast<std::size_t>(model.vertex_tets[static_cast<std::size_t>(i)] / 4);
-      if (state.is_live[tet] == 0) continue;
+    for_live_corners(model, state, n, [&](std::size_t tet, std::size_t) {
       const double share = 0.25 * filled_volume_mm3(model, state, tet);
       volume += share;
       change += share * dilations[tet];
       compliance += share / model.lame[tet].lambda_kpa;
-    }
+    });
     if (volume == 0.0) return;
     volume_[n] = volume;
     dilation_[n] = change / volume;
@@ -66,23 +63,19 @@ void VolumeAverages::add_stiffness(const TissueState& state, std::span<const Mat
                                    Workers& workers) const {
   const BlockPattern& stars = *model_.stars;
   const BlockPattern& pattern = *model_.pattern;
-  const auto star_of = [&](std::size_t n) {
-    const auto begin = static_cast<std::size_t>(stars.row_start[n]);
-    return std::span(stars.column).subspan(begin, static_cast<std::size_t>(stars.row_start[n + 1]) - begin);
-  };
   Points gradient(stars.blocks());
   workers.for_each(volume_.size(), kVerticesPerChunk, [&](std::size_t n) {
-    const auto star = star_of(n);
+    const auto star = stars.columns_of(n);
     const auto row = std::span(gradient).subspan(static_cast<std::size_t>(stars.row_start[n]), star.size());
     gather_gradient(model_, state, gradients, n, star, row);
   });
   // Row v: every vertex n of its star couples v to the whole star of n. n ascends, so K_wv is the exact transpose of
   // K_vw.
   workers.for_each(volume_.size(), kVerticesPerChunk, [&](std::size_t v) {
-    for (const std::int32_t neighbour : star_of(v)) {
+    for (const std::int32_t neighbour : stars.columns_of(v)) {
       const auto n = static_cast<std::size_t>(neighbour);
       if (volume_[n] == 0.0) continue;
-      const auto star = star_of(n);
+      const auto star = stars.columns_of(n);
       const Vec3* g = gradient.data() + stars.row_start[n];
       const auto self = std::lower_bound(star.begin(), star.end(), static_cast<std::int32_t>(v)) - star.begin();
       const double weight = modulus_[n] / volume_[n];

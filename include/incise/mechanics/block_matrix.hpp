@@ -10,6 +10,13 @@
 
 namespace incise {
 
+/// Returns list i of several lists that are stored one after another. @param start  lists + 1, into `items`.
+[[nodiscard]] inline std::span<const std::int32_t> list_of(const std::vector<std::int32_t>& start,
+                                                           const std::vector<std::int32_t>& items, std::size_t i) {
+  const auto first = static_cast<std::size_t>(start[i]);
+  return std::span(items).subspan(first, static_cast<std::size_t>(start[i + 1]) - first);
+}
+
 /// Sparsity pattern of a matrix of 3x3 blocks, one row and one column of blocks per vertex: compressed rows, columns
 /// ascending, diagonal blocks always present.
 struct BlockPattern {
@@ -18,6 +25,10 @@ struct BlockPattern {
   std::vector<std::int32_t> diagonal;   ///< N: slot of block (i, i)
   [[nodiscard]] std::size_t rows() const { return diagonal.size(); }
   [[nodiscard]] std::size_t blocks() const { return column.size(); }
+  /// Returns the columns of the blocks of a row, ascending.
+  [[nodiscard]] std::span<const std::int32_t> columns_of(std::size_t row) const {
+    return list_of(row_start, column, row);
+  }
 };
 
 /// Symmetric matrix of 3x3 blocks, both triangles stored; values in mN/mm.

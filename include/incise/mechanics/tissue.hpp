@@ -57,6 +57,11 @@ struct TissueModel {
   std::vector<std::int32_t> vertex_tet_start;           ///< N + 1, into vertex_tets
   std::vector<std::int32_t> vertex_tets;                ///< 4 * tet + corner, ascending: for gathering in fixed order
   std::shared_ptr<const TetBatches> batches;            ///< the above in the kernels' layout: rebuild it after a change
+
+  /// Returns the corners of tets that lie at a vertex, each as 4 * tet + corner, ascending.
+  [[nodiscard]] std::span<const std::int32_t> corners_at(std::size_t v) const {
+    return list_of(vertex_tet_start, vertex_tets, v);
+  }
 };
 
 /// Builds the model.
