@@ -146,10 +146,6 @@ double norm_of_sums(std::vector<std::pair<VertexId, Vec3>> pulls) {
   return std::sqrt(squared);
 }
 
-void add_block(const Mat3& block, std::int32_t slot, BlockMatrix& matrix) {
-  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.block(slot)) += block;
-}
-
 /// Adds the pull of the tool on bonded tets and its exact (constant) tangent. The tool pulls from its pose at the last
 /// contact search, so bonds and holding places belong to one moment. From `next` it would pull tissue that it has
 /// released on the way there, and the drag would grow with the step (docs/models/cutting.md). The held share of a tet
@@ -179,7 +175,7 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
       const VertexId v = model.mesh.tets[bond.tet.index()][a];
       forces[v.index()] += 0.25 * pull;
       pulls.emplace_back(v, 0.25 * pull);
-      for (std::size_t b = 0; b < 4; ++b) add_block(block, model.tet_slots[bond.tet.index()][4 * a + b], matrix);
+      for (std::size_t b = 0; b < 4; ++b) matrix.at(model.tet_slots[bond.tet.index()][4 * a + b]) += block;
     }
   }
   scale = norm_of_sums(std::move(pulls));
@@ -195,10 +191,8 @@ double add_hold(const TissueModel& model, const PointHold& hold, std::span<Vec3>
       const VertexId v = model.mesh.tets[held.tet.index()][a];
       forces[v.index()] += held.pull_mn[a];
       pulls.emplace_back(v, held.pull_mn[a]);
-      for (std::size_t b = 0; b < 4; ++b) {
-        add_block(held.stiffness_mn_mm[4 * a + b] * hold.directions, model.tet_slots[held.tet.index()][4 * a + b],
-                  matrix);
-      }
+      for (std::size_t b = 0; b < 4; ++b)
+        matrix.at(model.tet_slots[held.tet.index()][4 * a + b]) += held.stiffness_mn_mm[4 * a + b] * hold.directions;
     }
   }
   return norm_of_sums(std::move(pulls));

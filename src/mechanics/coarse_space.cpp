@@ -127,7 +127,6 @@ CoarseSpace::Modes CoarseSpace::modes(std::size_t v) const {
 /// Adds the six columns of Pᵀ A P that belong to one aggregate to target(other aggregate), blocks of 6 x 6.
 template <class Target>
 void CoarseSpace::project_rows(const BlockMatrix& matrix, std::size_t aggregate, const Target& target) const {
-  using RowBlock = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   std::vector<std::pair<std::int32_t, Modes>> sums;  // of A_vw P_w over the vertices w of each neighbouring aggregate
   for (const std::int32_t member : aggregates_.members(aggregate)) {
     const auto v = static_cast<std::size_t>(member);
@@ -137,7 +136,7 @@ void CoarseSpace::project_rows(const BlockMatrix& matrix, std::size_t aggregate,
       const std::int32_t other = aggregates_.of_vertex[w];
       auto sum = std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.first == other; });
       if (sum == sums.end()) sum = sums.insert(sums.end(), {other, Modes::Zero()});
-      sum->second.noalias() += RowBlock(matrix.block(slot)) * modes(w);
+      sum->second.noalias() += matrix.at(slot) * modes(w);
     }
     const Modes own = modes(v);
     for (const auto& [other, sum] : sums) target(other).noalias() += sum.transpose() * own;

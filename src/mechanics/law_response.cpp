@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::size_t kTetsPerChunk = 256;
 
-using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
 /// Response of every live tet at one state.
 class TetResponses {
  public:
@@ -52,26 +50,21 @@ class TetResponses {
 
   [[nodiscard]] const std::vector<Mat3>& stresses() const { return stresses_; }
 
-  /// Adds the four blocks in the row of `corner`. Block (b, a) is computed as the transpose of (a, b): symmetric bit
-  /// for bit.
+  /// Adds the four blocks in the row of `corner`.
   void add_stiffness(std::size_t tet, std::size_t corner, BlockMatrix& matrix) const {
     const auto& gradients = model_.gradients[tet];
     const Mat3 to_principal = tangents_[tet].v.transpose();
     std::array<Vec3, 4> principal;
     for (std::size_t c = 0; c < 4; ++c) principal[c] = to_principal * gradients[c];
-    for (std::size_t b = 0; b < 4; ++b) {
-      const std::size_t low = std::min(corner, b);
-      const std::size_t high = std::max(corner, b);
-      Mat3 block = stiffness_block(tangents_[tet], principal[low], principal[high]);
-      if (low == high) block = (0.5 * (block + block.transpose())).eval();
+    add_blocks(model_, state_, tet, corner, matrix, [&](std::size_t a, std::size_t b) {
+      Mat3 block = stiffness_block(tangents_[tet], principal[a], principal[b]);
+      if (a == b) block = (0.5 * (block + block.transpose())).eval();
       if (!model_.fibres.empty()) {
         const Vec3& fibre = model_.fibres[tet];
-        block += (gradients[low].dot(fibre) * gradients[high].dot(fibre)) * fibre_tangents_[tet];
+        block += (gradients[a].dot(fibre) * gradients[b].dot(fibre)) * fibre_tangents_[tet];
       }
-      if (low != corner) block.transposeInPlace();
-      Eigen::Map<RowMajor>(matrix.block(model_.tet_slots[tet][4 * corner + b])) +=
-          filled_volume_mm3(model_, state_, tet) * block;
-    }
+      return block;
+    });
   }
 
   void add_averaged_stiffness(BlockMatrix& matrix) const {

@@ -28,8 +28,7 @@ void add_support_response(const TissueModel& model, const TissueState& state, st
         continue;  // clear of the surface: a support never pulls. At the surface it resists from the first step on.
       forces[v] -= support.stiffness[i] * at.gap_mm * at.normal;
       if (stiffness == nullptr) continue;
-      Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(stiffness->block(model.pattern->diagonal[v])) +=
-          support.stiffness[i] * (at.normal * at.normal.transpose());
+      stiffness->at(model.pattern->diagonal[v]) += support.stiffness[i] * (at.normal * at.normal.transpose());
     }
   }
 }

@@ -152,17 +152,7 @@ std::shared_ptr<const TetBatches> make_split_batches(const TissueModel& model, c
 void mirror_row(BlockMatrix& matrix, std::span<const std::int32_t> mirror, std::size_t row) {
   const BlockPattern& pattern = *matrix.pattern;
   for (auto slot = pattern.row_start[row]; slot < pattern.diagonal[row]; ++slot) {
-    const double* from = matrix.block(mirror[static_cast<std::size_t>(slot)]);
-    double* to = matrix.block(slot);
-    to[0] = from[0];
-    to[1] = from[3];
-    to[2] = from[6];
-    to[3] = from[1];
-    to[4] = from[4];
-    to[5] = from[7];
-    to[6] = from[2];
-    to[7] = from[5];
-    to[8] = from[8];
+    matrix.at(slot) = matrix.at(mirror[static_cast<std::size_t>(slot)]).transpose();
   }
 }
 

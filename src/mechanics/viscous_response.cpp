@@ -15,8 +15,6 @@ namespace {
 
 constexpr std::size_t kTetsPerChunk = 256;
 
-using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-
 /// Returns the deviator of the Green-Lagrange strain (Fᵀ F − I)/2.
 Mat3 strain_deviator(const Mat3& f) {
   const Mat3 c = f.transpose() * f;
@@ -163,15 +161,11 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
       const auto& g = model.gradients[tet];
       force -= filled_volume_mm3(model, state, tet) * (r.f * (r.stress * g[corner]));
       if (stiffness == nullptr) return;
-      for (std::size_t b = 0; b < 4; ++b) {  // (b, a) as the transpose of (a, b): symmetric bit for bit
-        const std::size_t low = std::min(corner, b);
-        const std::size_t high = std::max(corner, b);
-        Mat3 block = viscous_block(r.f, r.geometric, tets.modulus(tet), g[low], g[high]);
-        if (low == high) block = (0.5 * (block + block.transpose())).eval();
-        if (low != corner) block.transposeInPlace();
-        Eigen::Map<RowMajor>(stiffness->block(model.tet_slots[tet][4 * corner + b])) +=
-            filled_volume_mm3(model, state, tet) * block;
-      }
+      add_blocks(model, state, tet, corner, *stiffness, [&](std::size_t a, std::size_t b) {
+        Mat3 block = viscous_block(r.f, r.geometric, tets.modulus(tet), g[a], g[b]);
+        if (a == b) block = (0.5 * (block + block.transpose())).eval();
+        return block;
+      });
     });
     forces[v] += force;
   });

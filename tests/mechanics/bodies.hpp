@@ -75,7 +75,7 @@ inline double largest(std::span<const Vec3> vectors) {
 }
 
 inline Mat3 block_of(const BlockMatrix& matrix, std::size_t slot) {
-  return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(matrix.block(static_cast<std::int32_t>(slot)));
+  return matrix.at(static_cast<std::int32_t>(slot));
 }
 
 /// All entries, for small bodies.

@@ -41,6 +41,12 @@ struct BlockMatrix {
   [[nodiscard]] const double* block(std::int32_t slot) const {
     return values.data() + 9 * static_cast<std::size_t>(slot);
   }
+  /// Returns the same numbers as a matrix, which may be assigned and added to.
+  [[nodiscard]] auto at(std::int32_t slot) { return Eigen::Map<RowMajor>(block(slot)); }
+  [[nodiscard]] auto at(std::int32_t slot) const { return Eigen::Map<const RowMajor>(block(slot)); }
+
+ private:
+  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 };
 
 /// Computes y = A x; x and y are N x 3. Sums have a fixed order: same bits at any thread count with the same
