@@ -34,18 +34,13 @@ Mat3 deformation_gradient(const TissueModel& model, std::span<const Vec3> positi
 }
 
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Tangent tangent, Workers& workers) {
+                          Workers& workers, Tangent tangent) {
   check_sizes(model, state, forces.size());
   if (is_plain_corotational(model)) {
     add_corotational_response(model, state, forces, stiffness, tangent, workers);
   } else {
     add_law_response(model, state, forces, stiffness, tangent, workers);
   }
-}
-
-void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Workers& workers) {
-  add_elastic_response(model, state, forces, stiffness, Tangent::FrozenRotations, workers);
 }
 
 double elastic_energy_uj(const TissueModel& model, const TissueState& state) {

@@ -136,9 +136,9 @@ class Step {
     for (std::size_t v = 0; v < applied_.size(); ++v) right[v] += applied_[v];
     std::vector<double>& values = scratch_.matrix.values;
     std::fill(values.begin(), values.end(), 0.0);
-    add_elastic_response(model_, tissue_, right, &scratch_.matrix, tangent, workers_);
+    add_elastic_response(model_, tissue_, right, &scratch_.matrix, workers_, tangent);
     add_damping(is_first);
-    add_viscous_response(model_, tissue_, settings_.step_s, right, &scratch_.matrix, tangent, workers_);
+    add_viscous_response(model_, tissue_, settings_.step_s, right, &scratch_.matrix, workers_, tangent);
     add_support_response(model_, tissue_, right, &scratch_.matrix);
     if (settings_.has_inertia) add_inertia();
     if (is_first && is_carried_) {  // held vertices carry the tissue along, by the linear response

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 namespace incise {
 namespace {
@@ -60,7 +61,7 @@ class Equilibrium {
 
   Outcome run() {
     start_positions_ = state_.positions;
-    out_of_balance_ = assemble(nullptr);
+    out_of_balance_ = assemble();
     double done = 0.0;
     double size = settings_.first_load_fraction;
     while (done < 1.0) {
@@ -125,12 +126,11 @@ class Equilibrium {
   }
 
   /// Returns the sum of all forces at the current positions; with `tangent` also fills matrix_.
-  const Points& assemble(const Tangent* tangent) {
+  const Points& assemble(std::optional<Tangent> tangent = {}) {
     forces_ = load_;
-    BlockMatrix* stiffness = tangent != nullptr ? &matrix_ : nullptr;
+    BlockMatrix* stiffness = tangent ? &matrix_ : nullptr;
     if (stiffness != nullptr) std::fill(matrix_.values.begin(), matrix_.values.end(), 0.0);
-    add_elastic_response(model_, state_, forces_, stiffness, tangent != nullptr ? *tangent : Tangent::FrozenRotations,
-                         workers_);
+    add_elastic_response(model_, state_, forces_, stiffness, workers_, tangent.value_or(Tangent::FrozenRotations));
     add_support_response(model_, state_, forces_, stiffness);
     return forces_;
   }
@@ -181,8 +181,7 @@ class Equilibrium {
     double before = 0.0;  // residual of the previous iteration; 0: none
     for (int i = 0; i < kMaxPerLoadStep; ++i) {
       if (monitor_.is_cancelled()) return Outcome::Cancelled;
-      Tangent tangent = Tangent::Exact;
-      assemble(&tangent);
+      assemble(Tangent::Exact);
       const double now = residual();
       if (!std::isfinite(now)) return Outcome::NotConverged;
       if (!must_jump) {
@@ -217,7 +216,7 @@ class Equilibrium {
   bool find_step(bool must_jump, double tolerance) {
     for (const Tangent tangent : {Tangent::Exact, Tangent::Projected}) {
       if (tangent == Tangent::Projected) {
-        assemble(&tangent);
+        assemble(tangent);
         ++projected_;
       }
       right_ = forces_;
@@ -243,7 +242,7 @@ class Equilibrium {
     double length = 1.0;
     for (int i = 0; i <= kMaxHalvings; ++i, length *= 0.5) {
       for (std::size_t v = 0; v < base.size(); ++v) state_.positions[v] = base[v] + length * step_[v];
-      assemble(nullptr);
+      assemble();
       if (residual() <= kGoodDecrease * before) return true;
       if (potential() <= base_potential + kArmijo * length * slope) return true;
       // Tissue that falls onto a support overshoots, and the next step, which knows the contacts, corrects it.

@@ -105,7 +105,7 @@ void StepStiffness::Data::assemble_all(const TissueModel& model, TissueState& st
                        std::fill(matrix.values.begin() + static_cast<std::ptrdiff_t>(begin),
                                  matrix.values.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
                      });
-  add_elastic_response(model, state, forces, &matrix, tangent, workers);
+  add_elastic_response(model, state, forces, &matrix, workers, tangent);
   for (std::size_t v = 0; v < model.vertex_mass_kg.size(); ++v) {
     double* diagonal = matrix.block(model.pattern->diagonal[v]);
     const double inertia = model.vertex_mass_kg[v] / (step_s * step_s);
@@ -150,7 +150,7 @@ void StepStiffness::begin(const TissueModel& model, TissueState& state, double s
     d.renew(model, state, forces, workers);
   }
   d.had_viscosity = has_viscosity;
-  if (has_viscosity) add_viscous_response(model, state, *viscous_s, forces, &d.matrix, tangent, workers);
+  if (has_viscosity) add_viscous_response(model, state, *viscous_s, forces, &d.matrix, workers, tangent);
   std::fill(d.next_changed.begin(), d.next_changed.end(), 0);
   for (const std::int32_t slot : d.support_slots) d.lend(slot);
   add_support_response(model, state, forces, &d.matrix);

@@ -135,7 +135,7 @@ ViscousMemory rest_memory(const Material& material, std::size_t tets) {
 }
 
 void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
-                          BlockMatrix* stiffness, Tangent tangent, Workers& workers) {
+                          BlockMatrix* stiffness, Workers& workers, Tangent tangent) {
   if (!is_viscous(model.material)) return;
   check(model, state, step_s);
   INCISE_REQUIRE(forces.size() == model.mesh.vertices.size(),
@@ -169,11 +169,6 @@ void add_viscous_response(const TissueModel& model, const TissueState& state, do
     });
     forces[v] += force;
   });
-}
-
-void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
-                          BlockMatrix* stiffness, Workers& workers) {
-  add_viscous_response(model, state, step_s, forces, stiffness, Tangent::FrozenRotations, workers);
 }
 
 double viscous_potential_uj(const TissueModel& model, const TissueState& state, double step_s) {

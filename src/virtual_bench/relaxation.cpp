@@ -38,8 +38,8 @@ void Relaxation::add_tangent(TissueState& state, double step_s, const std::vecto
   for (std::size_t t = 0; t < wanted_.size(); ++t) wanted_[t] = state.is_live[t] != 0 && is_wanted[t] != 0 ? 1 : 0;
   std::fill(ignored_.begin(), ignored_.end(), Vec3::Zero());
   state.is_live.swap(wanted_);
-  add_elastic_response(tissue_, state, ignored_, &matrix, Tangent::Projected, workers);
-  add_viscous_response(tissue_, state, step_s, ignored_, &matrix, Tangent::Projected, workers);
+  add_elastic_response(tissue_, state, ignored_, &matrix, workers, Tangent::Projected);
+  add_viscous_response(tissue_, state, step_s, ignored_, &matrix, workers, Tangent::Projected);
   state.is_live.swap(wanted_);
 }
 

@@ -88,8 +88,8 @@ class EveryLaw : public ::testing::TestWithParam<LawCase> {
                        Tangent tangent = Tangent::Exact, int threads = 1) {
     Workers workers(threads);
     Points result(state.positions.size(), Vec3::Zero());
-    add_elastic_response(model, state, result, stiffness, tangent, workers);
-    add_viscous_response(model, state, kStepS, result, stiffness, tangent, workers);
+    add_elastic_response(model, state, result, stiffness, workers, tangent);
+    add_viscous_response(model, state, kStepS, result, stiffness, workers, tangent);
     return result;
   }
   [[nodiscard]] static Eigen::MatrixXd stiffness(const TissueModel& model, TissueState state, Tangent tangent) {

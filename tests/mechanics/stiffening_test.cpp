@@ -193,7 +193,7 @@ TEST(StiffeningTissue, IsFiniteForTheLargestDeformationsOfItsLaw) {
     Points forces(state.positions.size(), Vec3::Zero());
     Workers workers(1);
     for (const Tangent tangent : {Tangent::Exact, Tangent::Projected}) {
-      add_elastic_response(bar.model(), state, forces, &stiffness, tangent, workers);
+      add_elastic_response(bar.model(), state, forces, &stiffness, workers, tangent);
       EXPECT_TRUE(dense(stiffness).allFinite()) << stretch.transpose();
     }
     for (const Vec3& force : forces) EXPECT_TRUE(force.allFinite()) << stretch.transpose();

@@ -141,10 +141,7 @@ enum class Tangent {
 /// @pre `stiffness` is symmetric.  @throws InvalidArgument for arrays of the wrong size, or a matrix of another pattern
 /// object than model.pattern.
 void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Tangent tangent, Workers& workers);
-/// The same with the tangent of frozen rotations.
-void add_elastic_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix* stiffness,
-                          Workers& workers);
+                          Workers& workers, Tangent tangent = Tangent::FrozenRotations);
 
 /// Adds viscous forces to `forces` (N x 3, mN), and their tangent to `stiffness` unless it is null: those at the end of
 /// a step of `step_s` (> 0) that began with state.memory and ends at state.positions. They are minus the gradient of
@@ -152,10 +149,7 @@ void add_elastic_response(const TissueModel& model, TissueState& state, std::spa
 /// size, a matrix of another pattern object than model.pattern, or a memory that does not fit the model (rest_state
 /// provides one).
 void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
-                          BlockMatrix* stiffness, Tangent tangent, Workers& workers);
-/// The same with the tangent of frozen rotations (projected).
-void add_viscous_response(const TissueModel& model, const TissueState& state, double step_s, std::span<Vec3> forces,
-                          BlockMatrix* stiffness, Workers& workers);
+                          BlockMatrix* stiffness, Workers& workers, Tangent tangent = Tangent::FrozenRotations);
 /// Returns the potential of a step's viscous forces, µJ, up to a constant. @throws as add_viscous_response.
 [[nodiscard]] double viscous_potential_uj(const TissueModel& model, const TissueState& state, double step_s);
 /// Ends a viscous step at state.positions: advances state.memory. An infinite `step_s` relaxes every branch completely,
