@@ -34,18 +34,18 @@ SweepTangent sweep_tangent(Tangent tangent) {
 
 TetSweep reading_sweep(const TissueModel& model, const TissueState& state) {
   INCISE_REQUIRE(model.batches != nullptr, "expected a model from make_tissue_model");
-  return {model.batches->batches.data(),
-          0,
-          state.positions.data()->data(),
-          state.is_live.data(),
-          state.fill.empty() ? nullptr : state.fill.data(),
-          state.rotations.data()->data(),
-          nullptr,
-          nullptr,
-          nullptr,
-          SweepTangent::None,
-          nullptr,
-          robust_rotation};
+  return {.positions = state.positions.data()->data(),
+          .is_live = state.is_live.data(),
+          .fill = state.fill.empty() ? nullptr : state.fill.data(),
+          .rotations = state.rotations.data()->data(),
+          .robust_rotation = robust_rotation};
+}
+
+TetSweep writing_sweep(const TissueModel& model, TissueState& state, std::span<Vec3> forces) {
+  TetSweep sweep = reading_sweep(model, state);
+  sweep.new_rotations = state.rotations.data()->data();
+  sweep.forces = forces.data()->data();
+  return sweep;
 }
 
 /// Returns the sweep restricted to one run of batches.
@@ -70,9 +70,7 @@ void sweep_all(const TetSweep& sweep, const TetBatches& batches, Workers& worker
 
 void add_corotational_response(const TissueModel& model, TissueState& state, std::span<Vec3> forces,
                                BlockMatrix* stiffness, Tangent tangent, Workers& workers) {
-  TetSweep sweep = reading_sweep(model, state);
-  sweep.new_rotations = state.rotations.data()->data();
-  sweep.forces = forces.data()->data();
+  TetSweep sweep = writing_sweep(model, state, forces);
   if (stiffness != nullptr) {
     INCISE_REQUIRE(stiffness->pattern == model.pattern, "expected a matrix of the model's own pattern");
     sweep.values = stiffness->values.data();
@@ -84,9 +82,7 @@ void add_corotational_response(const TissueModel& model, TissueState& state, std
 
 void renew_corotational_tangent(const TissueModel& model, TissueState& state, std::span<Vec3> forces, BlockMatrix& stiffness,
                                 const AssembledTets& assembled, Workers& workers) {
-  TetSweep sweep = reading_sweep(model, state);
-  sweep.new_rotations = state.rotations.data()->data();
-  sweep.forces = forces.data()->data();
+  TetSweep sweep = writing_sweep(model, state, forces);
   sweep.values = stiffness.values.data();
   sweep.tangent = SweepTangent::FrozenRotations;
   sweep.assembled = &assembled;
