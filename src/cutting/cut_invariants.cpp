@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace incise {
 namespace {
@@ -19,14 +20,15 @@ constexpr double kRounding = 1e-10;
 class Violations {
  public:
   template <class... Args>
-  void add(bool is_violated, bool& is_known, fmt::format_string<Args...> text, Args&&... args) {
-    if (!is_violated || is_known) return;
-    is_known = true;
+  void add(bool is_violated, fmt::format_string<Args...> text, Args&&... args) {
+    const fmt::string_view kind = text;
+    if (!is_violated || !known_.emplace(kind.data(), kind.size()).second) return;
     texts_.push_back(fmt::format(text, std::forward<Args>(args)...));
   }
   [[nodiscard]] std::vector<std::string> take() { return std::move(texts_); }
 
  private:
+  std::set<std::string> known_;  // kinds, by their format
   std::vector<std::string> texts_;
 };
 
@@ -51,25 +53,24 @@ bool is_ordered(const Removal& before, const Removal& next) {
 /// @returns one flag per tet: 1 if the tet is in the record.
 std::vector<std::uint8_t> check_record(const TissueModel& model, const CutState& state, Violations& violations) {
   std::vector<std::uint8_t> times_removed(model.mesh.tets.size(), 0);
-  bool unknown = false, twice = false, disordered = false, ahead = false, volume = false;
   const std::vector<Removal>& removals = state.record.removals;
   for (std::size_t i = 0; i < removals.size(); ++i) {
     const Removal& r = removals[i];
     const bool is_unknown = !r.tet.is_valid() || r.tet.index() >= model.mesh.tets.size();
-    violations.add(is_unknown, unknown, "record: entry {} names tet {}, expected one of {}", i, r.tet.value,
+    violations.add(is_unknown, "record: entry {} names tet {}, expected one of {}", i, r.tet.value,
                    model.mesh.tets.size());
     if (is_unknown) continue;
-    violations.add(times_removed[r.tet.index()] != 0, twice, "record: tet {} was removed twice, again in entry {}",
+    violations.add(times_removed[r.tet.index()] != 0, "record: tet {} was removed twice, again in entry {}",
                    r.tet.value, i);
     times_removed[r.tet.index()] = 1;
-    violations.add(i > 0 && !is_ordered(removals[i - 1], r), disordered,
+    violations.add(i > 0 && !is_ordered(removals[i - 1], r),
                    "record: entry {} (step {}, tet {}) does not follow the one before it (step {}, tet {})", i, r.step,
                    r.tet.value, removals[i > 0 ? i - 1 : 0].step, removals[i > 0 ? i - 1 : 0].tet.value);
     const bool is_ahead = !(r.step >= 0 && r.step <= state.step && r.time_s >= 0.0 && r.time_s <= state.time_s);
-    violations.add(is_ahead, ahead, "record: entry {} is from step {}, {} s; the cut is at step {}, {} s", i, r.step,
-                   r.time_s, state.step, state.time_s);
+    violations.add(is_ahead, "record: entry {} is from step {}, {} s; the cut is at step {}, {} s", i, r.step, r.time_s,
+                   state.step, state.time_s);
     const double held_mm3 = rest_volume_mm3(model, state.splits, r.tet);
-    violations.add(!(std::abs(r.rest_volume_mm3 - held_mm3) <= 1e-12 * held_mm3), volume,
+    violations.add(!(std::abs(r.rest_volume_mm3 - held_mm3) <= 1e-12 * held_mm3),
                    "record: tet {} has a rest volume of {} mm³, the record says {} mm³", r.tet.value, held_mm3,
                    r.rest_volume_mm3);
   }
@@ -78,74 +79,67 @@ std::vector<std::uint8_t> check_record(const TissueModel& model, const CutState&
 
 void check_balance(const TissueModel& model, const CutState& state, std::span<const std::uint8_t> times_removed,
                    Violations& violations) {
-  bool gone = false, alive = false, volume = false, mass = false;
   double live_mm3 = 0.0, uncut_mm3 = 0.0;
   for (std::size_t tet = 0; tet < times_removed.size(); ++tet) {
     const bool is_live = state.tissue.is_live[tet] != 0;
-    violations.add(!is_live && times_removed[tet] == 0, gone, "record: tet {} was removed but is not in the record",
-                   tet);
-    violations.add(is_live && times_removed[tet] != 0, alive, "record: tet {} is live but is in the record", tet);
+    violations.add(!is_live && times_removed[tet] == 0, "record: tet {} was removed but is not in the record", tet);
+    violations.add(is_live && times_removed[tet] != 0, "record: tet {} is live but is in the record", tet);
     const double held_mm3 = rest_volume_mm3(model, state.splits, TetId(tet));
     if (is_live) live_mm3 += held_mm3;
     uncut_mm3 += tet + state.splits.copies.size() < times_removed.size() ? model.volumes_mm3[tet] : 0.0;
   }
   const double found_mm3 = live_mm3 + state.record.removed_volume_mm3();
-  violations.add(!(std::abs(found_mm3 - uncut_mm3) <= kRounding * uncut_mm3), volume,
+  violations.add(!(std::abs(found_mm3 - uncut_mm3) <= kRounding * uncut_mm3),
                  "balance: live and removed rest volume are {} mm³, the uncut body's is {} mm³", found_mm3, uncut_mm3);
   // The model stores mass per vertex, so this also checks that lumping lost no mass.
   const double uncut_kg = std::accumulate(model.vertex_mass_kg.begin(), model.vertex_mass_kg.end(), 0.0);
   const double found_kg = found_mm3 * units::kg_mm3_from_kg_m3(model.material.density_kg_m3);
-  violations.add(!(std::abs(found_kg - uncut_kg) <= kRounding * uncut_kg), mass,
+  violations.add(!(std::abs(found_kg - uncut_kg) <= kRounding * uncut_kg),
                  "balance: live and removed mass are {} kg, the uncut body's is {} kg", found_kg, uncut_kg);
 }
 
 void check_positions(const TissueModel& model, const CutState& state, Violations& violations) {
-  bool position = false, dosed = false;
   for (std::size_t tet = 0; tet < model.mesh.tets.size(); ++tet) {
     const double dose = state.dose[tet];
     const double torn = state.tear_dose[tet];
-    violations.add(!(std::isfinite(dose) && torn >= 0.0 && torn <= dose), dosed,
-                   "dose: tet {} has {}, of which {} "
-                   "from tearing",
-                   tet, dose, torn);
+    violations.add(!(std::isfinite(dose) && torn >= 0.0 && torn <= dose),
+                   "dose: tet {} has {}, of which {} from tearing", tet, dose, torn);
     if (state.tissue.is_live[tet] == 0) continue;
     for (const VertexId v : model.mesh.tets[tet]) {
-      violations.add(!state.tissue.positions[v.index()].allFinite(), position,
+      violations.add(!state.tissue.positions[v.index()].allFinite(),
                      "positions: vertex {} of live tet {} is not finite", v.value, tet);
     }
   }
 }
 
 void check_points(const TissueModel& whole, const CutState& state, Violations& violations) {
-  bool unsound = false, dosed = false, filled = false;
   const CutPoints& p = state.points;
   const std::string problem = find_problem(whole, state);
-  violations.add(!problem.empty(), unsound, "{}", problem);
-  if (unsound) return;
+  violations.add(!problem.empty(), "{}", problem);
+  if (!problem.empty()) return;
   for (std::size_t i = 0; i < p.dose.size(); ++i) {
     const bool is_sound = std::isfinite(p.dose[i]) && p.dose[i] >= 0.0 && (p.dose[i] >= 1.0) == (p.parted_step[i] >= 0);
-    violations.add(!is_sound, dosed, "points: point {} has a dose of {} and parted in step {}", i, p.dose[i],
+    violations.add(!is_sound, "points: point {} has a dose of {} and parted in step {}", i, p.dose[i],
                    p.parted_step[i]);
   }
   for (std::size_t t = 0; t < state.tissue.fill.size(); ++t) {
     const double fill = state.tissue.fill[t];
-    violations.add(!(fill > 0.0 && fill <= 1.0), filled, "points: tet {} has {} of its stiffness left", t, fill);
+    violations.add(!(fill > 0.0 && fill <= 1.0), "points: tet {} has {} of its stiffness left", t, fill);
   }
 }
 
 void check_bonds(const TissueModel& model, const CutState& state, Violations& violations) {
-  bool unknown = false, dead = false, disordered = false, offset = false;
   for (std::size_t i = 0; i < state.bonds.size(); ++i) {
     const Bond& bond = state.bonds[i];
     const bool is_unknown = !bond.tet.is_valid() || bond.tet.index() >= model.mesh.tets.size();
-    violations.add(is_unknown, unknown, "bonds: entry {} names tet {}, expected one of {}", i, bond.tet.value,
+    violations.add(is_unknown, "bonds: entry {} names tet {}, expected one of {}", i, bond.tet.value,
                    model.mesh.tets.size());
     if (is_unknown) continue;
-    violations.add(state.tissue.is_live[bond.tet.index()] == 0, dead, "bonds: tet {} is held but was removed",
+    violations.add(state.tissue.is_live[bond.tet.index()] == 0, "bonds: tet {} is held but was removed",
                    bond.tet.value);
-    violations.add(i > 0 && !(state.bonds[i - 1].tet < bond.tet), disordered, "bonds: tet {} does not follow tet {}",
+    violations.add(i > 0 && !(state.bonds[i - 1].tet < bond.tet), "bonds: tet {} does not follow tet {}",
                    bond.tet.value, state.bonds[i > 0 ? i - 1 : 0].tet.value);
-    violations.add(!bond.offset_mm.allFinite(), offset, "bonds: the offset of tet {} is not finite", bond.tet.value);
+    violations.add(!bond.offset_mm.allFinite(), "bonds: the offset of tet {} is not finite", bond.tet.value);
   }
 }
 
