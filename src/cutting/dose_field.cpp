@@ -14,15 +14,10 @@ double DoseField::at(const Vec3& rest) const {
   const PointLattice::Node low = PointLattice::cell_of(rest);
   const Vec3 t = (rest - PointLattice::rest_position(low)) / PointLattice::kSpacingMm;
   double sum = 0.0, weights = 0.0;
-  for (int c = 0; c < 8; ++c) {
-    const std::array<int, 3> step{c & 1, c >> 1 & 1, c >> 2};
-    const auto found = point_at_.find({low[0] + step[0], low[1] + step[1], low[2] + step[2]});
+  for (std::size_t c = 0; c < 8; ++c) {
+    const auto found = point_at_.find(PointLattice::corner_of(low, c));
     if (found == point_at_.end()) continue;
-    double weight = 1.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double along = t[static_cast<Eigen::Index>(a)];
-      weight *= step[a] != 0 ? along : 1.0 - along;
-    }
+    const double weight = PointLattice::corner_weight(c, t);
     sum += weight * std::min(kMostDose, points_.dose[found->second]);
     weights += weight;
   }

@@ -3,7 +3,6 @@
 #include "point_lattice.hpp"
 
 #include <optional>
-#include <unordered_map>
 
 namespace incise {
 
@@ -25,7 +24,7 @@ class DoseField {
 
  private:
   const CutPoints& points_;
-  std::unordered_map<PointLattice::Node, std::size_t, PointLattice::NodeHash> point_at_;
+  PointLattice::AtNodes<std::size_t> point_at_;
 };
 
 }  // namespace incise

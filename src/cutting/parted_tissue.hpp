@@ -7,7 +7,6 @@
 
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 namespace incise {
@@ -40,8 +39,7 @@ class PartedTissue {
   TetMesh split_;
   PointLattice lattice_;
   TetLocator locator_;
-  std::unordered_map<PointLattice::Node, std::vector<std::size_t>, PointLattice::NodeHash>
-      near_node_;  // points that are not parted
+  PointLattice::AtNodes<std::vector<std::size_t>> near_node_;  // points that are not parted
 };
 
 }  // namespace incise

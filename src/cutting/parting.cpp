@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <unordered_map>
 
 namespace incise {
 namespace {
@@ -311,7 +310,7 @@ class Splitter {
   std::vector<StarTet> stars_;
   std::vector<std::size_t> left_;  // points of the stars that are not parted
   std::vector<std::size_t> part_of_;  // of each of them
-  std::unordered_map<PointLattice::Node, std::size_t, PointLattice::NodeHash> at_node_;  // place in left_
+  PointLattice::AtNodes<std::size_t> at_node_;  // place in left_
   std::vector<Part> parts_;
   std::map<std::size_t, VertexId> vertex_of_;  // by the root of a set of corners
 };

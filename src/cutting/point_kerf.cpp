@@ -16,12 +16,6 @@ namespace {
 constexpr std::array<std::array<std::size_t, 4>, 6> kKuhn{
     {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
 
-PointLattice::Node moved(const PointLattice::Node& node, std::size_t corner, int by = 1) {
-  PointLattice::Node other = node;
-  for (std::size_t a = 0; a < 3; ++a) other[a] += (corner >> a & 1U) != 0 ? by : 0;
-  return other;
-}
-
 struct DosedPlace {
   Vec3 at;
   double dose;
@@ -64,7 +58,7 @@ PointKerf::Cell PointKerf::cell(const PointLattice::Node& low) const {
   Vec3 mean = Vec3::Zero();
   int known = 0;
   for (std::size_t c = 0; c < 8; ++c) {
-    corners[c] = corner(moved(low, c));
+    corners[c] = corner(PointLattice::corner_of(low, c));
     cell.doses[c] = corners[c].dose;
     if (!corners[c].is_known) continue;
     mean += corners[c].displacement;
@@ -72,7 +66,8 @@ PointKerf::Cell PointKerf::cell(const PointLattice::Node& low) const {
   }
   if (known > 0) mean /= known;
   for (std::size_t c = 0; c < 8; ++c) {
-    cell.at[c] = PointLattice::rest_position(moved(low, c)) + (corners[c].is_known ? corners[c].displacement : mean);
+    cell.at[c] = PointLattice::rest_position(PointLattice::corner_of(low, c)) +
+                 (corners[c].is_known ? corners[c].displacement : mean);
   }
   return cell;
 }
@@ -81,7 +76,7 @@ std::vector<std::array<Vec3, 4>> PointKerf::tets() const {
   std::set<PointLattice::Node> cells;
   for (const auto& [node, point] : points_at_) {
     if (points_.dose[point] < 1.0) continue;
-    for (std::size_t c = 0; c < 8; ++c) cells.insert(moved(node, c, -1));
+    for (std::size_t c = 0; c < 8; ++c) cells.insert(PointLattice::corner_of(node, c, -1));
   }
   std::vector<std::array<Vec3, 4>> result;
   for (const PointLattice::Node& low : cells) {
@@ -117,14 +112,7 @@ TriMesh PointKerf::surface() const {
     const std::array<Vec3, 8> at = cell(node).at;
     const Vec3 t = v - floor;
     Vec3 sum = Vec3::Zero();
-    for (std::size_t c = 0; c < 8; ++c) {
-      double weight = 1.0;
-      for (std::size_t a = 0; a < 3; ++a) {
-        const double x = t[static_cast<Eigen::Index>(a)];
-        weight *= (c >> a & 1U) != 0 ? x : 1.0 - x;
-      }
-      sum += weight * at[c];
-    }
+    for (std::size_t c = 0; c < 8; ++c) sum += PointLattice::corner_weight(c, t) * at[c];
     v = sum;
   }
   return surface;

@@ -5,8 +5,6 @@
 #include <incise/cutting/cut_points.hpp>
 #include <incise/geometry/tet_mesh.hpp>
 
-#include <unordered_map>
-
 namespace incise {
 
 /// The kerf of a cut by points: the tissue in which the dose, interpolated between the nodes of the lattice, is at
@@ -41,7 +39,7 @@ class PointKerf {
   const CutPoints& points_;
   std::span<const Vec3> positions_;
   PointLattice lattice_;
-  std::unordered_map<PointLattice::Node, std::size_t, PointLattice::NodeHash> points_at_;
+  PointLattice::AtNodes<std::size_t> points_at_;
 };
 
 }  // namespace incise

@@ -43,6 +43,20 @@ PointLattice::Node PointLattice::cell_of(const Vec3& rest) {
   return {low[0], low[1], low[2]};
 }
 
+PointLattice::Node PointLattice::corner_of(Node node, std::size_t corner, int by) {
+  for (std::size_t a = 0; a < 3; ++a) node[a] += (corner >> a & 1U) != 0 ? by : 0;
+  return node;
+}
+
+double PointLattice::corner_weight(std::size_t corner, const Vec3& t) {
+  double weight = 1.0;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double along = t[static_cast<Eigen::Index>(a)];
+    weight *= (corner >> a & 1U) != 0 ? along : 1.0 - along;
+  }
+  return weight;
+}
+
 PointLattice::PointLattice(const TissueModel& model, std::span<const TetId> tets)
     : model_(&model), first_(model.mesh.tets.size(), -1), count_(model.mesh.tets.size(), 0) {
   for (const TetId tet : tets) add(tet);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,8 @@ class PointLattice {
       return hash;
     }
   };
+  template <class Value>
+  using AtNodes = std::unordered_map<Node, Value, NodeHash>;
   static constexpr double kSpacingMm = 0.2;
 
   /// The points of the given tets. Keeps a reference to the model.
@@ -69,6 +72,11 @@ class PointLattice {
   [[nodiscard]] static Node node_near(const Vec3& rest);
   /// Returns the node with the lowest coordinates of the cell that contains a place at rest, mm.
   [[nodiscard]] static Node cell_of(const Vec3& rest);
+  /// Returns a corner of the cell above a node: bit a of `corner` means `by` steps along axis a.
+  [[nodiscard]] static Node corner_of(Node node, std::size_t corner, int by = 1);
+  /// Returns the trilinear weight of a corner of a cell at a place in it. @param t  from the lowest corner, in
+  /// spacings.
+  [[nodiscard]] static double corner_weight(std::size_t corner, const Vec3& t);
 
  private:
   const TissueModel* model_;
