@@ -55,16 +55,17 @@ double point_triangle_interior_squared(const Vec3& p, const Vec3& a, const Vec3&
   return height * height / area;
 }
 
+constexpr std::array<std::array<std::size_t, 3>, 4> kFaceCorners{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
+
 /// Whether the segment enters the solid tet: it is clipped against the four half-spaces.
 bool meets(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
-  static constexpr std::array<std::array<int, 3>, 4> kFaces{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
   double enter = 0.0;
   double leave = 1.0;
-  for (int corner = 0; corner < 4; ++corner) {
-    const auto [i, j, k] = kFaces[static_cast<std::size_t>(corner)];
-    const Vec3& origin = tet[static_cast<std::size_t>(i)];
-    Vec3 inwards = (tet[static_cast<std::size_t>(j)] - origin).cross(tet[static_cast<std::size_t>(k)] - origin);
-    const double side = inwards.dot(tet[static_cast<std::size_t>(corner)] - origin);
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    const auto [i, j, k] = kFaceCorners[corner];
+    const Vec3& origin = tet[i];
+    Vec3 inwards = (tet[j] - origin).cross(tet[k] - origin);
+    const double side = inwards.dot(tet[corner] - origin);
     if (side == 0.0) return false;  // flat: its edges give the distance
     if (side < 0.0) inwards = -inwards;
     const double at_a = inwards.dot(a - origin);
@@ -135,14 +136,13 @@ double distance_to_core(const Vec3& point, const ToolCore& core) { return std::s
 
 double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
   if (meets(tet, a, b)) return 0.0;
-  static constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
-  static constexpr std::array<std::array<int, 3>, 4> kFaces{{{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
   double best = std::numeric_limits<double>::infinity();
-  const auto corner = [&tet](int i) -> const Vec3& { return tet[static_cast<std::size_t>(i)]; };
-  for (const auto& [i, j] : kEdges) best = std::min(best, segment_segment_squared(corner(i), corner(j), a, b));
-  for (const auto& [i, j, k] : kFaces) {
-    best = std::min(best, point_triangle_interior_squared(a, corner(i), corner(j), corner(k)));
-    best = std::min(best, point_triangle_interior_squared(b, corner(i), corner(j), corner(k)));
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) best = std::min(best, segment_segment_squared(tet[i], tet[j], a, b));
+  }
+  for (const auto& [i, j, k] : kFaceCorners) {
+    best = std::min(best, point_triangle_interior_squared(a, tet[i], tet[j], tet[k]));
+    best = std::min(best, point_triangle_interior_squared(b, tet[i], tet[j], tet[k]));
   }
   return std::sqrt(best);
 }

@@ -1,3 +1,4 @@
+#include "contact.hpp"
 #include "kerf.hpp"
 
 #include <incise/core/error.hpp>
@@ -261,9 +262,8 @@ std::size_t count_inverted(const TetMesh& mesh, const TissueState& tissue) {
   std::size_t count = 0;
   for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
     if (tissue.is_live[tet] == 0) continue;
-    const Tet& t = mesh.tets[tet];
-    const auto& x = tissue.positions;
-    if (signed_volume(x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]) <= 0.0) ++count;
+    const auto [a, b, c, d] = corners_of(mesh, tissue.positions, tet);
+    if (signed_volume(a, b, c, d) <= 0.0) ++count;
   }
   return count;
 }

@@ -1,5 +1,6 @@
 #include "kerf.hpp"
 
+#include "contact.hpp"
 #include "parted_tissue.hpp"
 #include "point_kerf.hpp"
 
@@ -37,11 +38,8 @@ KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, con
   if (by_points != nullptr) {
     kerf.removed_tets = by_points->tets();
   } else {
-    for (const Removal& removal : record.removals) {
-      const Tet& t = model.mesh.tets[removal.tet.index()];
-      const Points& x = stretched.positions;
-      kerf.removed_tets.push_back({x[t[0].index()], x[t[1].index()], x[t[2].index()], x[t[3].index()]});
-    }
+    for (const Removal& removal : record.removals)
+      kerf.removed_tets.push_back(corners_of(model.mesh, stretched.positions, removal.tet.index()));
   }
   kerf.surface = skin_of(model.mesh, stretched.positions);
   kerf.approach = settings.approach;

@@ -40,10 +40,6 @@ class Nearest {
   Vec3 approach_;
 };
 
-}  // namespace
-
-namespace {
-
 /// Planned depth of the tool's tip at the points of the profile, along the approach: linear between waypoints.
 std::vector<double> planned_along(const ToolPath& path, const DepthProfile& profile, const Vec3& approach) {
   const std::size_t n = path.waypoints.size();

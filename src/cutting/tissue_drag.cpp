@@ -81,10 +81,6 @@ Spread weighted_spread(std::span<const double> values, std::span<const double> w
   return {sum / weight, *low, *high};
 }
 
-}  // namespace
-
-namespace {
-
 /// Sums over the tissue that was cut in each step, by the step's number.
 std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> stretched,
                                const IncisionSettings& settings, const CutState& state) {
