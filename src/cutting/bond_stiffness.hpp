@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 namespace incise {
 
 /// Returns the bond stiffness with which tets of finite size transmit the same pull as the continuum of the law.
@@ -12,6 +14,9 @@ namespace incise {
 /// @param mu_kpa         μ, shear modulus of the tet, kPa, > 0.
 /// @param edge_mm        h, root mean square of the tet's edges at rest, >= 0.
 /// @returns κ_h, kPa/mm², in [0, κ].
-[[nodiscard]] double resolved_bond_stiffness(double kappa_kpa_mm2, double mu_kpa, double edge_mm);
+[[nodiscard]] inline double resolved_bond_stiffness(double kappa_kpa_mm2, double mu_kpa, double edge_mm) {
+  // The positive root, in a form without cancellation for fine meshes.
+  return 2.0 * kappa_kpa_mm2 / (1.0 + std::sqrt(1.0 + kappa_kpa_mm2 * edge_mm * edge_mm / (3.0 * mu_kpa)));
+}
 
 }  // namespace incise

@@ -123,6 +123,13 @@ Vec3 centroid(const std::array<Vec3, 4>& corners) {
   return 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
 }
 
+/// Corners on their straight ways from one place to another, at a fraction t of the way.
+std::array<Vec3, 4> on_the_way(const std::array<Vec3, 4>& from, const std::array<Vec3, 4>& to, double t) {
+  std::array<Vec3, 4> corners;
+  for (std::size_t i = 0; i < 4; ++i) corners[i] = from[i] + t * (to[i] - from[i]);
+  return corners;
+}
+
 /// Root mean square of the edge lengths.
 double mean_edge_mm(const std::array<Vec3, 4>& corners) {
   double squares = 0.0;
@@ -352,11 +359,7 @@ std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, c
     const std::size_t tet = candidates[c].index();
     const auto from = corners_of(model.mesh, before, tet);
     const auto to = corners_of(model.mesh, state.tissue.positions, tet);
-    const auto at = [&](double t) {
-      std::array<Vec3, 4> corners;
-      for (std::size_t i = 0; i < 4; ++i) corners[i] = from[i] + t * (to[i] - from[i]);
-      return corners;
-    };
+    const auto at = [&](double t) { return on_the_way(from, to, t); };
     std::array<double, kIntervalsPerStep + 1> distances{};
     for (std::size_t m = 0; m < distances.size(); ++m) {
       distances[m] = distance_to_core(at(static_cast<double>(m) / kIntervalsPerStep), cores[m]);
@@ -481,9 +484,7 @@ std::vector<TetId> tets_near(const TissueModel& model, NearTets& finder, std::sp
     const auto to = corners_of(model.mesh, after, candidates[c].index());
     for (std::size_t m = 0; m < cores.size() && is_near[c] == 0; ++m) {
       const double t = cores.size() > 1 ? static_cast<double>(m) / static_cast<double>(cores.size() - 1) : 0.0;
-      std::array<Vec3, 4> corners;
-      for (std::size_t i = 0; i < 4; ++i) corners[i] = from[i] + t * (to[i] - from[i]);
-      if (distance_to_core(corners, cores[m]) <= distance_mm) is_near[c] = 1;
+      if (distance_to_core(on_the_way(from, to, t), cores[m]) <= distance_mm) is_near[c] = 1;
     }
   });
   std::vector<TetId> near;
