@@ -41,15 +41,4 @@ void simulate_incisions(std::span<const IncisionTask> tasks, Workers& workers, M
   if (!tasks.empty() && !monitor.is_cancelled()) monitor.progress("cutting", 1.0);
 }
 
-std::vector<IncisionJobResult> simulate_incisions(const TissueModel& model, const TissueState& stretched,
-                                                  std::span<const IncisionJob> jobs, Workers& workers,
-                                                  Monitor& monitor) {
-  std::vector<IncisionTask> tasks;
-  for (const IncisionJob& job : jobs) tasks.push_back({&model, &stretched, job});
-  std::vector<IncisionJobResult> results(jobs.size());
-  simulate_incisions(tasks, workers, monitor,
-                     [&results](std::size_t i, IncisionJobResult result) { results[i] = std::move(result); });
-  return results;
-}
-
 }  // namespace incise

@@ -26,8 +26,14 @@ class IncisionBatch : public testing::RingInABlock {
 
   [[nodiscard]] std::vector<IncisionJobResult> run(const std::vector<IncisionJob>& jobs, int threads,
                                                    Monitor& monitor) const {
+    const TissueState stretched = rest_state(model_);
+    std::vector<IncisionTask> tasks;
+    for (const IncisionJob& job : jobs) tasks.push_back({&model_, &stretched, job});
+    std::vector<IncisionJobResult> results(jobs.size());
     Workers workers(threads);
-    return simulate_incisions(model_, rest_state(model_), jobs, workers, monitor);
+    simulate_incisions(tasks, workers, monitor,
+                       [&results](std::size_t i, IncisionJobResult result) { results[i] = std::move(result); });
+    return results;
   }
 
   Monitor silent_;

@@ -9,13 +9,13 @@
 
 namespace incise {
 
-/// One of several incisions into the same stretched tissue.
+/// An incision of a batch.
 struct IncisionJob {
   IncisionSettings settings;
   ToolPath path;
 };
 
-/// One of several incisions, each into its own stretched tissue.
+/// A job with its stretched tissue, which several tasks may share.
 struct IncisionTask {
   const TissueModel* model = nullptr;      ///< outlives the call
   const TissueState* stretched = nullptr;  ///< outlives the call
@@ -29,21 +29,14 @@ struct IncisionJobResult {
       problem;  ///< why the job could not run (InvalidArgument of simulate_incision); empty: it ran
 };
 
-/// Simulates several incisions into one stretched tissue side by side, each on one thread, at most as many at a time as
-/// `workers` has threads. Each result is bit for bit that of simulate_incision. A job that cannot run does not affect
-/// the others. When the monitor cancels, running incisions end as Cancelled, and finished results remain complete. Each
-/// running incision holds its own workspace; each result holds its final state and frames.
-/// @returns one result per job, in the order of `jobs`.
-[[nodiscard]] std::vector<IncisionJobResult> simulate_incisions(const TissueModel& model, const TissueState& stretched,
-                                                                std::span<const IncisionJob> jobs, Workers& workers,
-                                                                Monitor& monitor);
-
 /// Receives the result of each task when the task ends, cancelled ones included. Called from any thread, one call at a
 /// time. An exception from it ends the batch, and Workers rethrows it.
 using IncisionTaken = std::function<void(std::size_t task, IncisionJobResult result)>;
 
-/// Simulates several incisions side by side, as above, each into its own tissue. Keeps no results: passes each to
-/// `take` when its incision ends.
+/// Simulates several incisions side by side, each on one thread, at most as many at a time as `workers` has threads.
+/// Each result is bit for bit that of simulate_incision. A job that cannot run does not affect the others. When the
+/// monitor cancels, running incisions end as Cancelled, and finished results remain complete. Each running incision
+/// holds its own workspace. Keeps no results: passes each to `take` when its incision ends.
 void simulate_incisions(std::span<const IncisionTask> tasks, Workers& workers, Monitor& monitor,
                         const IncisionTaken& take);
 
