@@ -26,7 +26,6 @@ class TangentSolver {
   void forget();
 
   [[nodiscard]] int cg_iterations() const { return cg_iterations_; }
-  [[nodiscard]] int factorisations() const { return factorisations_; }
   /// Returns the chosen solver, the reason, and how it performed; for a person.
   [[nodiscard]] std::string explanation() const;
 

@@ -1,9 +1,10 @@
 #include "second_bench/brick_tissue.hpp"
 
+#include <incise/geometry/disjoint_sets.hpp>
+
 #include <algorithm>
 #include <bit>
 #include <limits>
-#include <numeric>
 
 namespace incise::second_bench {
 namespace {
@@ -88,7 +89,6 @@ void share_corner(BrickTissue& tissue, int i, int j, int k) {
   struct Member {
     int piece;
     int octant;  // bit 0: the brick lies after the corner along x, ...
-    int root;
   };
   std::vector<Member> members;
   const BrickGrid& grid = tissue.grid;
@@ -96,34 +96,27 @@ void share_corner(BrickTissue& tissue, int i, int j, int k) {
     const int a = i - 1 + (octant & 1), b = j - 1 + (octant >> 1 & 1), c = k - 1 + (octant >> 2);
     if (a < 0 || b < 0 || c < 0 || a >= grid.bricks_along(0) || b >= grid.bricks_along(1) || c >= grid.bricks_along(2))
       continue;
-    for (const int piece : tissue.pieces_of[grid.brick(a, b, c)])
-      members.push_back({piece, octant, static_cast<int>(members.size())});
+    for (const int piece : tissue.pieces_of[grid.brick(a, b, c)]) members.push_back({piece, octant});
   }
-  const auto root_of = [&](int n) {
-    while (members[static_cast<std::size_t>(n)].root != n) n = members[static_cast<std::size_t>(n)].root;
-    return n;
-  };
-  for (int m = 0; m < static_cast<int>(members.size()); ++m)
-    for (int n = m + 1; n < static_cast<int>(members.size()); ++n) {
-      const Member& low = members[static_cast<std::size_t>(m)];
-      const Member& high = members[static_cast<std::size_t>(n)];
+  DisjointSets sets(members.size());
+  for (std::size_t m = 0; m < members.size(); ++m)
+    for (std::size_t n = m + 1; n < members.size(); ++n) {
+      const Member &low = members[m], &high = members[n];
       const int way = low.octant ^ high.octant;
       if (!std::has_single_bit(static_cast<unsigned>(way))) continue;
       const int axis = std::countr_zero(static_cast<unsigned>(way));
-      if (!touch(tissue.voxels_of[static_cast<std::size_t>(low.piece)],
-                 tissue.voxels_of[static_cast<std::size_t>(high.piece)], axis))
-        continue;
-      const int a = root_of(m), b = root_of(n);
-      members[static_cast<std::size_t>(std::max(a, b))].root = std::min(a, b);
+      if (touch(tissue.voxels_of[static_cast<std::size_t>(low.piece)],
+                tissue.voxels_of[static_cast<std::size_t>(high.piece)], axis))
+        sets.join(m, n);
     }
   std::vector<std::int32_t> node_of(members.size(), -1);
   std::vector<std::int32_t> taken;
-  for (int m = 0; m < static_cast<int>(members.size()); ++m) {
-    const Member& member = members[static_cast<std::size_t>(m)];
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    const Member& member = members[m];
     auto& corner =
         tissue.octets[static_cast<std::size_t>(member.piece) / kLanes]
             .node[static_cast<std::size_t>(7 - member.octant)][static_cast<std::size_t>(member.piece) % kLanes];
-    std::int32_t& node = node_of[static_cast<std::size_t>(root_of(m))];
+    std::int32_t& node = node_of[sets.root(m)];
     if (node < 0) {
       node = corner;
       if (std::find(taken.begin(), taken.end(), node) != taken.end()) {
@@ -328,31 +321,21 @@ void shrink(BrickTissue& tissue, int piece, float share) {
 }
 
 std::size_t remove_loose(BrickTissue& tissue) {
-  std::vector<int> root(tissue.position.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto root_of = [&](int n) {
-    while (root[static_cast<std::size_t>(n)] != n) {
-      root[static_cast<std::size_t>(n)] = root[static_cast<std::size_t>(root[static_cast<std::size_t>(n)])];
-      n = root[static_cast<std::size_t>(n)];
-    }
-    return n;
-  };
+  DisjointSets sets(tissue.position.size());
+  const auto node_of = [&](int piece, int corner) { return static_cast<std::size_t>(tissue.node(piece, corner)); };
   const auto pieces = static_cast<int>(tissue.piece_count());
   for (int p = 0; p < pieces; ++p) {
     if (tissue.voxels_of[static_cast<std::size_t>(p)] == 0) continue;
-    for (int c = 1; c < 8; ++c) {
-      const int a = root_of(tissue.node(p, 0)), b = root_of(tissue.node(p, c));
-      root[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
-    }
+    for (int c = 1; c < 8; ++c) sets.join(node_of(p, 0), node_of(p, c));
   }
-  std::vector<std::uint8_t> hangs(root.size(), 0);
-  for (int n = 1; n < static_cast<int>(root.size()); ++n)
-    if (tissue.is_held[static_cast<std::size_t>(n)] != 0) hangs[static_cast<std::size_t>(root_of(n))] = 1;
+  std::vector<std::uint8_t> hangs(tissue.position.size(), 0);
+  for (std::size_t n = 1; n < hangs.size(); ++n)
+    if (tissue.is_held[n] != 0) hangs[sets.root(n)] = 1;
   std::size_t count = 0;
   std::vector<std::pair<int, Voxels>> loose;
   for (int p = 0; p < pieces; ++p) {
     const Voxels voxels = tissue.voxels_of[static_cast<std::size_t>(p)];
-    if (voxels == 0 || hangs[static_cast<std::size_t>(root_of(tissue.node(p, 0)))] != 0) continue;
+    if (voxels == 0 || hangs[sets.root(node_of(p, 0))] != 0) continue;
     count += static_cast<std::size_t>(std::popcount(voxels));
     loose.emplace_back(p, voxels);
   }
