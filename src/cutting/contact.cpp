@@ -1,7 +1,5 @@
 #include "contact.hpp"
 
-#include <incise/cutting/carving.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -3,7 +3,6 @@
 #include <incise/geometry/mesh_splits.hpp>
 #include <incise/mechanics/block_matrix.hpp>
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -1,7 +1,5 @@
 #include <incise/cutting/incision_memory.hpp>
 
-#include <algorithm>
-
 namespace incise {
 namespace {
 

@@ -6,7 +6,6 @@
 #include <incise/geometry/iso_surface.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 namespace incise {

@@ -1,9 +1,6 @@
 #include "point_rule.hpp"
 
-#include "contact.hpp"
-
 #include <algorithm>
-#include <cmath>
 
 namespace incise {
 namespace {

@@ -2,8 +2,6 @@
 #include <incise/core/expect.hpp>
 #include <incise/cutting/thermal.hpp>
 
-#include <fmt/ranges.h>
-
 #include <cmath>
 #include <numbers>
 #include <optional>

@@ -2,7 +2,6 @@
 #include "point_lattice.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 namespace incise {

@@ -6,7 +6,6 @@
 #include <incise/mechanics/block_matrix.hpp>
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
 #include <vector>
 

@@ -5,7 +5,6 @@
 #include "mechanics/vector_text.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/units.hpp>
 
 #include <fmt/format.h>
 

@@ -1,4 +1,3 @@
-#include "mechanics/elastic_response.hpp"
 #include "mechanics/reactions.hpp"
 #include "mechanics/tangent_solver.hpp"
 

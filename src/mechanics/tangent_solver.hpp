@@ -3,7 +3,6 @@
 #include <incise/mechanics/solvers.hpp>
 #include <incise/mechanics/tissue.hpp>
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>

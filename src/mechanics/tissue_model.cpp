@@ -5,7 +5,6 @@
 #include "mechanics/viscous_response.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/expect.hpp>
 #include <incise/core/units.hpp>
 #include <incise/mechanics/tissue.hpp>
 

@@ -1,5 +1,6 @@
 #include "virtual_bench/electrode.hpp"
 #include "virtual_bench/loose_parts.hpp"
+#include "virtual_bench/relaxation.hpp"
 
 #include <incise/bench_kit/pictures.hpp>
 #include <incise/core/error.hpp>

@@ -7,8 +7,6 @@
 #include <incise/meshing/mesher.hpp>
 #include <incise/virtual_bench/body.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,9 +1,6 @@
 #pragma once
 
-#include "virtual_bench/relaxation.hpp"
-
 #include <incise/mechanics/tissue.hpp>
-#include <incise/virtual_bench/bench_cut.hpp>
 
 #include <array>
 #include <span>

@@ -8,8 +8,6 @@
 #include <incise/mechanics/solvers.hpp>
 #include <incise/mechanics/tissue.hpp>
 
-#include <array>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>

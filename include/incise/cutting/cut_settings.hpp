@@ -6,7 +6,6 @@
 #include <incise/core/problem.hpp>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace incise {

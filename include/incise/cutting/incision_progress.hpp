@@ -2,7 +2,6 @@
 
 #include <incise/cutting/carving.hpp>
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <incise/core/describe.hpp>
 #include <incise/core/problem.hpp>
 
-#include <string>
 #include <vector>
 
 namespace incise {

@@ -6,7 +6,6 @@
 #include <incise/geometry/types.hpp>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace incise {
