@@ -46,28 +46,17 @@ void require_valid(const IncisionSettings& settings) {
   require_none(violations);
 }
 
-/// Keeps frames evenly spaced over the cut: the first before it, the last at the end of the run.
-class FrameKeeper {
- public:
-  FrameKeeper(int frames, double duration_s, std::vector<CutFrame>& kept)
-      : frames_(frames), duration_s_(duration_s), kept_(kept) {}
+void keep_frame(IncisionProgress& progress, bool is_tool_in) {
+  const CutState& state = progress.state;
+  progress.frames.push_back({state.time_s, state.step, state.tool, is_tool_in, state.tissue.positions});
+}
 
-  void offer(const CutState& state, bool is_tool_in) {
-    const double due = duration_s_ * static_cast<double>(kept_.size()) / std::max(1, frames_ - 1);
-    if (static_cast<int>(kept_.size()) < frames_ - 1 && state.time_s >= due - kTimeRoundingS) keep(state, is_tool_in);
-  }
-  void keep_last(const CutState& state, bool is_tool_in) {
-    if (frames_ > 0) keep(state, is_tool_in);
-  }
-
- private:
-  void keep(const CutState& state, bool is_tool_in) {
-    kept_.push_back({state.time_s, state.step, state.tool, is_tool_in, state.tissue.positions});
-  }
-  int frames_;
-  double duration_s_;
-  std::vector<CutFrame>& kept_;
-};
+/// Keeps a frame if one is due: frames are evenly spaced over the cut, the first before it, the last at the run's end.
+void offer_frame(const IncisionSettings& settings, const ToolProgram& program, IncisionProgress& progress) {
+  const auto kept = static_cast<int>(progress.frames.size());
+  const double due = program.duration_s() * static_cast<double>(kept) / std::max(1, settings.frames - 1);
+  if (kept < settings.frames - 1 && progress.state.time_s >= due - kTimeRoundingS) keep_frame(progress, true);
+}
 
 CutStepLog log_of(const CutState& state, const CutStepReport& report) {
   return {state.time_s,
@@ -112,7 +101,6 @@ class IncisionRun {
         workers_(workers),
         monitor_(monitor),
         keep_(keep),
-        frames_(settings.frames, program.duration_s(), progress.frames),
         earlier_wall_s_(progress.wall_s) {}
 
   /// @returns Success: the program was completed; otherwise Cancelled or NotConverged.
@@ -123,7 +111,7 @@ class IncisionRun {
       const double dt = next_step_s();
       const CutStepReport report = step(program_.pose_at(state().time_s + dt), dt);
       if (!report.is_finite) return broken_off();
-      frames_.offer(state(), true);
+      offer_frame(settings_, program_, progress_);
       monitor_.progress("cutting", std::min(1.0, state().time_s / program_.duration_s()));
     }
     while (progress_.relaxation_steps < kMaxRelaxationSteps) {
@@ -142,7 +130,9 @@ class IncisionRun {
   }
 
   /// The tool is still in if the cut was cancelled or broke off before the first step without it.
-  void keep_last_frame() { frames_.keep_last(state(), progress_.relaxation_steps == 0); }
+  void keep_last_frame() {
+    if (settings_.frames > 0) keep_frame(progress_, progress_.relaxation_steps == 0);
+  }
   [[nodiscard]] bool is_at_rest() const { return is_at_rest_; }
 
  private:
@@ -219,7 +209,6 @@ class IncisionRun {
   Workers& workers_;
   Monitor& monitor_;
   const ProgressKeeper& keep_;
-  FrameKeeper frames_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
   double earlier_wall_s_;
   bool is_at_rest_ = false;
@@ -284,7 +273,7 @@ IncisionProgress begin_incision(const TissueModel& model, const TissueState& str
   progress.state = begin_cut(model, stretched, program.pose_at(0.0));
   remember_deformation(model, progress.state.tissue,
                        settings.time_since_stretch_s.value_or(std::numeric_limits<double>::infinity()));
-  FrameKeeper(settings.frames, program.duration_s(), progress.frames).offer(progress.state, true);
+  offer_frame(settings, program, progress);
   return progress;
 }
 
