@@ -74,14 +74,13 @@ CutSurface cut_surface(const TetMesh& mesh, const TissueState& tissue, const Inc
   surface.vertices = tissue.positions;
   surface.approach = settings.approach;
   surface.inside_mm = inside;
-  // Both lists are ordered by tet, then face. A face of the live skin is original if it is also in the uncut skin.
-  const std::vector<BoundaryFace> uncut = boundary_faces(mesh);
-  auto original = uncut.begin();
+  const std::vector<std::uint8_t> uncut = skin_faces(mesh);
   for (const BoundaryFace& face : boundary_faces(mesh, tissue.is_live)) {
-    while (original != uncut.end() && original->tet < face.tet) ++original;
-    const bool is_skin =
-        std::any_of(original, uncut.end() - original > 4 ? original + 4 : uncut.end(),
-                    [&face](const BoundaryFace& o) { return o.tet == face.tet && o.corners == face.corners; });
+    bool is_skin = false;
+    for (int f = 0; f < 4; ++f) {
+      const bool is_uncut = (uncut[face.tet.index()] >> f & 1) != 0;
+      is_skin = is_skin || (is_uncut && face_of(mesh.tets[face.tet.index()], f) == face.corners);
+    }
     surface.triangles.push_back(face.corners);
     surface.is_skin.push_back(is_skin ? 1 : 0);
   }

@@ -22,6 +22,10 @@ void require_measurable(const TissueModel& model, const TissueState& stretched, 
 void measure_kerf(const TissueModel& model, const TissueState& stretched, const ToolPath& path,
                   const IncisionSettings& settings, IncisionResult& result, Workers& workers);
 
+/// Returns mean and range of values, of which there is at least one.
+/// @param weights  of the values in the mean; empty: 1 each.
+[[nodiscard]] Spread spread_of(std::span<const double> values, std::span<const double> weights = {});
+
 /// The single measures. `kerf`: the removed tissue as tets in the stretched tissue before the cut.
 [[nodiscard]] KerfBody kerf_body(const TetMesh& mesh, std::span<const Vec3> stretched,
                                  std::span<const std::uint8_t> is_live);

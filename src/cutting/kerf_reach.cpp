@@ -7,15 +7,9 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace incise {
 namespace {
-
-Spread spread_of(std::span<const double> values) {
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  return {std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()), *low, *high};
-}
 
 /// Least distances between the kerf and the tumour: in all, beside and beneath the tumour.
 class Nearest {
@@ -57,6 +51,17 @@ std::vector<double> planned_along(const ToolPath& path, const DepthProfile& prof
 }
 
 }  // namespace
+
+Spread spread_of(std::span<const double> values, std::span<const double> weights) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  double sum = 0.0, weight = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double own = weights.empty() ? 1.0 : weights[i];
+    sum += own * values[i];
+    weight += own;
+  }
+  return {sum / weight, *low, *high};
+}
 
 DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings) {
   DepthReached result;

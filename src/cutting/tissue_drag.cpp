@@ -69,17 +69,6 @@ struct StepSum {
   Vec3 moment = Vec3::Zero();  // displacement · volume
 };
 
-Spread weighted_spread(std::span<const double> values, std::span<const double> weights) {
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
-  double sum = 0.0;
-  double weight = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    sum += weights[i] * values[i];
-    weight += weights[i];
-  }
-  return {sum / weight, *low, *high};
-}
-
 /// Sums over the tissue that was cut in each step, by the step's number.
 std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> stretched,
                                const IncisionSettings& settings, const CutState& state) {
@@ -126,8 +115,8 @@ std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const 
     volumes.push_back(step.volume_mm3);
   }
   if (volumes.empty()) return std::nullopt;
-  drag.lag = weighted_spread(drag.lag_mm, volumes);
-  drag.drift = weighted_spread(drag.drift_mm, volumes);
+  drag.lag = spread_of(drag.lag_mm, volumes);
+  drag.drift = spread_of(drag.drift_mm, volumes);
   return drag;
 }
 
