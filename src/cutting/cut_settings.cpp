@@ -35,17 +35,15 @@ std::vector<Problem> validate(const CutSettings& s, double tool_diameter_mm) {
                             fmt::format("at most {} s", kMaxContactS)});
     }
   }
-  if (s.rule == CutRule::Lattice && s.tear_energy_kpa) {
-    violations.push_back({"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none with rule lattice"});
+  if (s.rule != CutRule::Tets && s.tear_energy_kpa) {
+    violations.push_back({"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa),
+                          fmt::format("none with rule {}", to_string(s.rule))});
   }
-  if (s.rule == CutRule::Paper) {
-    if (s.tear_energy_kpa)
-      violations.push_back({"tear_energy_kpa", fmt::format("{}", *s.tear_energy_kpa), "none with rule paper"});
-    if (!(s.advance_mm() <= tool_diameter_mm))
-      violations.push_back(
-          {"reference_step_s",
-           fmt::format("{} at {} mm/s: {:.3g} mm a step", s.reference_step_s, s.speed_mm_s, s.advance_mm()),
-           "at most the tool's diameter or thickness"});
+  if (s.rule == CutRule::Paper && !(s.advance_mm() <= tool_diameter_mm)) {
+    violations.push_back(
+        {"reference_step_s",
+         fmt::format("{} at {} mm/s: {:.3g} mm a step", s.reference_step_s, s.speed_mm_s, s.advance_mm()),
+         "at most the tool's diameter or thickness"});
   }
   Expect{violations}(s.advance_per_step_mm <= tool_diameter_mm, "advance_per_step_mm", s.advance_per_step_mm,
                      "at most the tool's diameter or thickness");

@@ -12,8 +12,6 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kTetsPerChunk = 256;
-
 /// Response of every live tet at one state.
 class TetResponses {
  public:

@@ -13,8 +13,6 @@
 namespace incise {
 namespace {
 
-constexpr std::size_t kTetsPerChunk = 256;
-
 /// Returns the deviator of the Green-Lagrange strain (Fᵀ F − I)/2.
 Mat3 strain_deviator(const Mat3& f) {
   const Mat3 c = f.transpose() * f;

@@ -64,7 +64,8 @@ class Cutting {
 
   Cut run(const std::vector<TipPose>& course, Monitor& monitor) {
     const std::vector<TipPose> poses = steps_of(course);
-    suture_start_ = held_at_suture();
+    for (const std::int32_t node : state_.suture_nodes)
+      suture_start_.push_back(state_.tissue.position[static_cast<std::size_t>(node)]);
     result_.steps = static_cast<int>(poses.size()) - 1;
     for (std::size_t n = 1; n < poses.size(); ++n) {
       throw_if_cancelled(monitor, "cutting");
@@ -111,13 +112,6 @@ class Cutting {
       poses.push_back({time, needle.tip + swayed_mm(since_s, since_s / whole_s), needle.axis, true});
     }
     return poses;
-  }
-
-  [[nodiscard]] std::vector<std::array<float, 4>> held_at_suture() const {
-    std::vector<std::array<float, 4>> places;
-    for (const std::int32_t node : state_.suture_nodes)
-      places.push_back(state_.tissue.position[static_cast<std::size_t>(node)]);
-    return places;
   }
 
   /// Returns the displacement of the tool relative to tissue that breathes and drifts, mm.

@@ -98,9 +98,9 @@ class Cut {
         relaxation_(*body.tissue, body.stretched.positions),
         uncut_skin_(skin_at(body, body.stretched.positions)),
         loose_(mesh_, held_vertices(*body.tissue)),
+        state_(body.stretched),
         dose_kpa_(mesh_.tets.size(), 0.0),
         slip_mm_s_(mesh_.tets.size(), 0.0) {
-    state_ = body.stretched;
     const Specimen& s = body.specimen;
     // The steam's work per time and volume: the kernel's integral over the immersed needle is pi reach²/3 times the
     // immersed length.

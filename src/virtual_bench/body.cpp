@@ -200,7 +200,6 @@ BenchBody make_body(const Specimen& specimen, const BenchResolution& resolution,
 
 Contour tumor_edge_at(const BenchBody& body, std::span<const Vec3> positions) {
   Contour edge;
-  edge.is_closed = true;
   for (const EmbeddedPoint& point : body.tumor_edge)
     edge.points.push_back(position_of(point, body.tissue->mesh, positions));
   return edge;

@@ -39,11 +39,10 @@ std::vector<std::size_t> tets_in_reach(const TetMesh& mesh, const TissueState& s
     // The distance of one corner excludes most of the body: a quadrature point lies within the tet's size of it.
     const Vec3& corner = state.positions[mesh.tets[t][0].index()];
     if (electrode.distance_mm(corner) > reach + 3.0) continue;
-    for (const auto& weights : quadrature()) {
-      if (electrode.distance_mm(point_in(mesh, state.positions, t, weights)) > reach) continue;
-      found.push_back(t);
-      break;
-    }
+    const bool is_in_reach = std::ranges::any_of(quadrature(), [&](const auto& weights) {
+      return !(electrode.distance_mm(point_in(mesh, state.positions, t, weights)) > reach);
+    });
+    if (is_in_reach) found.push_back(t);
   }
   return found;
 }
