@@ -200,7 +200,6 @@ PcgReport TwoLevelPcg::solve(const BlockMatrix& matrix, std::span<const Vec3> b,
     double multiply() { return data.apply_matrix(matrix, workers); }
   } sweeps{d, matrix, x, workers};
   PcgReport report = iterate(sweeps, settings);
-  report.is_redone = d.single != nullptr;
   report.iterations += in_single.iterations;
   return report;
 }

@@ -27,15 +27,13 @@ struct FibreDirections {
   double residual = 0.0;               ///< relative to the residual of the potential 0
 };
 
-/// Default limit for fibre_directions. A mesh of a million tets takes about 500 iterations.
-inline constexpr int kMostFibreIterations = 10000;
-
 /// Computes the direction of the fibres in each tet: along the gradient of the potential that is 0 in `from`, 1 in `to`
 /// and harmonic between them, with no flux through the skin (linear tets, conjugate gradients). Equations and limits:
 /// docs/models/elasticity.md, "Fibres".
+/// @param most_iterations  of conjugate gradients; a mesh of a million tets takes about 500.
 /// @throws InvalidArgument if find_problems(mesh) finds any; CaseError (field specimen.material.fibre_field.from or
 /// .to) for a region that cannot be applied to the mesh or selects no vertex, and for regions with a common vertex.
 [[nodiscard]] FibreDirections fibre_directions(const TetMesh& mesh, const FibreField& field,
-                                               int most_iterations = kMostFibreIterations);
+                                               int most_iterations = 10000);
 
 }  // namespace incise

@@ -28,11 +28,9 @@ struct PcgSettings {
 
 struct PcgReport {
   bool converged = false;
-  int iterations = 0;
+  int iterations = 0;          ///< of a system that was solved again in double precision: both solutions'
   double residual_mn = 0.0;    ///< |r| at the end
   bool is_indefinite = false;  ///< a direction of zero or negative stiffness was met
-  bool is_redone = false;  ///< single precision did not converge, so the system was solved again in double precision;
-                           ///< `iterations` counts both
 };
 
 /// Number format of the iterations.
