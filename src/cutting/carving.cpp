@@ -456,23 +456,6 @@ std::size_t carve(const TissueModel& model, CutState& state, const CutWorkspace:
   return remove_loose(model, state, scratch, due);
 }
 
-}  // namespace
-
-std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace,
-                        std::span<const TetId> tets) {
-  std::vector<TetId> due;
-  for (const TetId tet : tets) {
-    INCISE_REQUIRE(tet.is_valid() && tet.index() < state.tissue.is_live.size(),
-                   fmt::format("expected one of {} tets, found {}", state.tissue.is_live.size(), tet.value));
-    if (state.tissue.is_live[tet.index()] != 0) due.push_back(tet);
-  }
-  std::sort(due.begin(), due.end());
-  due.erase(std::unique(due.begin(), due.end()), due.end());
-  return due.size() + carve(workspace.model_for(model, state.splits), state, workspace.data(), due);
-}
-
-namespace {
-
 /// Wanted tets that lie within a distance of the tool at one of the moments of its cores, ascending.
 std::vector<TetId> tets_near(const TissueModel& model, NearTets& finder, std::span<const std::uint8_t> is_wanted,
                              std::span<const Vec3> before, std::span<const Vec3> after, std::span<const ToolCore> cores,
@@ -615,6 +598,19 @@ std::vector<TetId> count_step(const TissueModel& model, const CutSettings& setti
 }
 
 }  // namespace
+
+std::size_t remove_tets(const TissueModel& model, CutState& state, CutWorkspace& workspace,
+                        std::span<const TetId> tets) {
+  std::vector<TetId> due;
+  for (const TetId tet : tets) {
+    INCISE_REQUIRE(tet.is_valid() && tet.index() < state.tissue.is_live.size(),
+                   fmt::format("expected one of {} tets, found {}", state.tissue.is_live.size(), tet.value));
+    if (state.tissue.is_live[tet.index()] != 0) due.push_back(tet);
+  }
+  std::sort(due.begin(), due.end());
+  due.erase(std::unique(due.begin(), due.end()), due.end());
+  return due.size() + carve(workspace.model_for(model, state.splits), state, workspace.data(), due);
+}
 
 CutStepReport advance(const TissueModel& whole, const CutSettings& settings, const Tool& tool, CutState& state,
                       CutWorkspace& workspace, const std::optional<ToolPose>& next, double step_s, Workers& workers) {

@@ -123,30 +123,6 @@ double point_core_squared(const Vec3& p, const ToolCore& core) {
   return best;
 }
 
-}  // namespace
-
-double distance_to_core(const std::array<Vec3, 4>& tet, const ToolCore& core) {
-  const std::span<const Vec3> corners = core.corners();
-  return corners.size() <= 2 ? distance_to_segment(tet, corners.front(), corners.back()) : distance_to_rectangle(tet, corners);
-}
-
-double distance_to_core(const Vec3& point, const ToolCore& core) { return std::sqrt(point_core_squared(point, core)); }
-
-double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
-  if (meets(tet, a, b)) return 0.0;
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = i + 1; j < 4; ++j) best = std::min(best, segment_segment_squared(tet[i], tet[j], a, b));
-  }
-  for (const auto& [i, j, k] : kFaceCorners) {
-    best = std::min(best, point_triangle_interior_squared(a, tet[i], tet[j], tet[k]));
-    best = std::min(best, point_triangle_interior_squared(b, tet[i], tet[j], tet[k]));
-  }
-  return std::sqrt(best);
-}
-
-namespace {
-
 constexpr int kPassingSteps = 12;          // at most, of regula falsi for a moment at which contact begins or ends
 constexpr double kPassingMm = 1e-6;        // such a moment is found when the distance is within this of the limit
 constexpr int kLeastSteps = 8;             // of the golden section search for the moment of least distance
@@ -206,6 +182,26 @@ Moment least_moment(const Over& over, double from, double to) {
 }
 
 }  // namespace
+
+double distance_to_core(const std::array<Vec3, 4>& tet, const ToolCore& core) {
+  const std::span<const Vec3> corners = core.corners();
+  return corners.size() <= 2 ? distance_to_segment(tet, corners.front(), corners.back()) : distance_to_rectangle(tet, corners);
+}
+
+double distance_to_core(const Vec3& point, const ToolCore& core) { return std::sqrt(point_core_squared(point, core)); }
+
+double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
+  if (meets(tet, a, b)) return 0.0;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = i + 1; j < 4; ++j) best = std::min(best, segment_segment_squared(tet[i], tet[j], a, b));
+  }
+  for (const auto& [i, j, k] : kFaceCorners) {
+    best = std::min(best, point_triangle_interior_squared(a, tet[i], tet[j], tet[k]));
+    best = std::min(best, point_triangle_interior_squared(b, tet[i], tet[j], tet[k]));
+  }
+  return std::sqrt(best);
+}
 
 ContactInterval contact_interval(std::span<const double> distances_mm, const std::function<double(double)>& distance_mm,
                                  double limit_mm) {

@@ -11,25 +11,6 @@
 #include <optional>
 
 namespace incise {
-namespace {
-
-constexpr std::size_t kValuesPerChunk = 65536;
-
-void check(const MotionSettings& settings) {
-  const auto is_at_least_0 = [](double value) { return std::isfinite(value) && value >= 0.0; };
-  INCISE_REQUIRE(std::isfinite(settings.step_s) && settings.step_s > 0.0,
-                 fmt::format("expected step_s above 0, found {}", settings.step_s));
-  INCISE_REQUIRE(is_at_least_0(settings.rayleigh_alpha) && is_at_least_0(settings.rayleigh_beta),
-                 fmt::format("expected Rayleigh coefficients of 0 or more, found {} and {}", settings.rayleigh_alpha,
-                             settings.rayleigh_beta));
-  INCISE_REQUIRE(settings.max_newton_iterations > 0 && settings.max_cg_iterations > 0,
-                 fmt::format("expected at least 1 iteration, found {} and {}", settings.max_newton_iterations,
-                             settings.max_cg_iterations));
-  INCISE_REQUIRE(settings.relative_tolerance > 0.0 && settings.relative_tolerance < 1.0,
-                 fmt::format("expected relative_tolerance in (0, 1), found {}", settings.relative_tolerance));
-}
-
-}  // namespace
 
 struct MotionWorkspace::Data {
   BlockMatrix matrix;
@@ -48,19 +29,23 @@ struct MotionWorkspace::Data {
         loose(right.size()) {}
 };
 
-MotionWorkspace::MotionWorkspace(const TissueModel& model, const MotionSettings& settings) {
-  check(settings);
-  data_ = std::make_unique<Data>(model, settings);
-}
-MotionWorkspace::~MotionWorkspace() = default;
-MotionWorkspace::MotionWorkspace(MotionWorkspace&&) noexcept = default;
-MotionWorkspace& MotionWorkspace::operator=(MotionWorkspace&&) noexcept = default;
-
-Motion motion_at_rest(const TissueModel& model, const TissueState& state) {
-  return {state, Points(model.mesh.vertices.size(), Vec3::Zero()), 0.0};
-}
-
 namespace {
+
+constexpr std::size_t kValuesPerChunk = 65536;
+
+void check(const MotionSettings& settings) {
+  const auto is_at_least_0 = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  INCISE_REQUIRE(std::isfinite(settings.step_s) && settings.step_s > 0.0,
+                 fmt::format("expected step_s above 0, found {}", settings.step_s));
+  INCISE_REQUIRE(is_at_least_0(settings.rayleigh_alpha) && is_at_least_0(settings.rayleigh_beta),
+                 fmt::format("expected Rayleigh coefficients of 0 or more, found {} and {}", settings.rayleigh_alpha,
+                             settings.rayleigh_beta));
+  INCISE_REQUIRE(settings.max_newton_iterations > 0 && settings.max_cg_iterations > 0,
+                 fmt::format("expected at least 1 iteration, found {} and {}", settings.max_newton_iterations,
+                             settings.max_cg_iterations));
+  INCISE_REQUIRE(settings.relative_tolerance > 0.0 && settings.relative_tolerance < 1.0,
+                 fmt::format("expected relative_tolerance in (0, 1), found {}", settings.relative_tolerance));
+}
 
 /// One step. `tissue_` is the trial state; the motion itself changes only in finish().
 class Step {
@@ -202,6 +187,18 @@ class Step {
 };
 
 }  // namespace
+
+MotionWorkspace::MotionWorkspace(const TissueModel& model, const MotionSettings& settings) {
+  check(settings);
+  data_ = std::make_unique<Data>(model, settings);
+}
+MotionWorkspace::~MotionWorkspace() = default;
+MotionWorkspace::MotionWorkspace(MotionWorkspace&&) noexcept = default;
+MotionWorkspace& MotionWorkspace::operator=(MotionWorkspace&&) noexcept = default;
+
+Motion motion_at_rest(const TissueModel& model, const TissueState& state) {
+  return {state, Points(model.mesh.vertices.size(), Vec3::Zero()), 0.0};
+}
 
 StepReport advance_motion(const TissueModel& model, Motion& motion, const MotionSettings& settings,
                           MotionWorkspace& workspace, Workers& workers, std::span<const Vec3> applied_mn) {
