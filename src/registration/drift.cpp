@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace incise {
 namespace {
@@ -201,13 +202,6 @@ class Expectation {
   Mat3 scatter_ = Mat3::Zero();
 };
 
-void require_usable(std::span<const Vec3> points, const char* name) {
-  INCISE_REQUIRE(!points.empty(), fmt::format("{}: expected at least 1 point, found none", name));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    INCISE_REQUIRE(points[i].allFinite(), fmt::format("{}: point {} is not finite", name, i));
-  }
-}
-
 }  // namespace
 
 ScaleRange ScaleRange::free() {
@@ -227,11 +221,7 @@ double background(double sigma, double outlier_weight, int dimensions, double so
 
 MatchSums match(const WeightedPoints& source, const WeightedPoints& target, const Similarity& t, double sigma,
                 const DriftSettings& settings, Workers& workers) {
-  const auto total = [](const std::vector<double>& weights) {
-    double sum = 0.0;
-    for (const double w : weights) sum += w;
-    return sum;
-  };
+  const auto total = [](const std::vector<double>& w) { return std::accumulate(w.begin(), w.end(), 0.0); };
   const double source_count = total(source.weights);
   const double target_count = total(target.weights);
   const double noise = background(sigma, settings.outlier_weight, settings.dimensions, source_count, target_count);
@@ -285,17 +275,9 @@ CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec
     drift.outcome = DriftOutcome::Degenerate;
     return drift;
   }
-  // In the coordinates of the search the source has mean 0, the target mean 0 and radius 1; scales do not change.
   const double length = target_measure.radius;
-  const auto to_search = [&](const Similarity& t) {
-    return Similarity{t.scale, t.rotation, (t(source_measure.center) - target_measure.center) / length};
-  };
-  const auto from_search = [&](const Similarity& t) {
-    return Similarity{
-        t.scale, t.rotation,
-        length * t.translation_mm + target_measure.center - t.scale * (t.rotation * source_measure.center)};
-  };
-  drift.T_target_source = to_search(start);
+  const SearchFrame frame{source_measure.center, target_measure.center, length};
+  drift.T_target_source = frame.inwards(start);
   if (!settings.first_sigma) {
     // As published: centroids coincide, and sizes are equal as far as the range allows.
     drift.T_target_source.scale = std::clamp(length / source_measure.radius, settings.scale.low, settings.scale.high);
@@ -304,7 +286,7 @@ CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec
   Expectation(normalised(source, source_measure.center, length), normalised(target, target_measure.center, length),
               settings, workers)
       .run(drift, monitor);
-  drift.T_target_source = from_search(drift.T_target_source);
+  drift.T_target_source = frame.outwards(drift.T_target_source);
   drift.sigma_mm *= length;
   drift.last_step_mm *= length;
   return drift;

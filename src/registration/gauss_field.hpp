@@ -6,7 +6,6 @@
 #include <incise/geometry/types.hpp>
 
 #include <array>
-#include <limits>
 #include <span>
 #include <vector>
 

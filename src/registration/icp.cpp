@@ -10,9 +10,6 @@
 namespace incise {
 namespace {
 
-using Vec7 = Eigen::Matrix<double, 7, 1>;
-using Mat7 = Eigen::Matrix<double, 7, 7>;
-
 constexpr double kWidths = 2.5;       // final width of the weight, in robust standard deviations
 constexpr double kShrink = 0.7;       // smallest factor by which the width changes per step
 constexpr double kLeastWidth = 1e-6;  // of the target's spacing: for identical clouds

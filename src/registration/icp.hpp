@@ -2,7 +2,6 @@
 
 #include "registration/surface_match.hpp"
 
-#include <incise/core/monitor.hpp>
 #include <incise/registration/drift.hpp>
 
 namespace incise {
@@ -34,9 +33,9 @@ struct Icp {
 
 /// Returns the gradient of a pair's distance with respect to a small motion of the moved source (rotation vector about
 /// `center`, translation, logarithm of the scale).
-[[nodiscard]] Eigen::Matrix<double, 7, 1> pair_gradient(const SurfacePair& pair, const Vec3& center);
+[[nodiscard]] Vec7 pair_gradient(const SurfacePair& pair, const Vec3& center);
 
 /// Returns t followed by the motion.
-[[nodiscard]] Similarity nudged(const Similarity& t, const Eigen::Matrix<double, 7, 1>& motion, const Vec3& center);
+[[nodiscard]] Similarity nudged(const Similarity& t, const Vec7& motion, const Vec3& center);
 
 }  // namespace incise

@@ -1,10 +1,15 @@
 #include "registration/levels.hpp"
 
+#include <incise/core/error.hpp>
+
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace incise {
 namespace {
@@ -83,6 +88,39 @@ Points normalised(std::span<const Vec3> points, const Vec3& center, double lengt
 bool is_line(const Vec3& variances) {
   constexpr double kThin = 1e-12;  // of the largest variance: a millionth in length
   return !(variances[2] > 0.0) || variances[1] < kThin * variances[2];
+}
+
+void require_usable(std::span<const Vec3> points, const char* name) {
+  INCISE_REQUIRE(!points.empty(), fmt::format("{}: expected at least 1 point, found none", name));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    INCISE_REQUIRE(points[i].allFinite(), fmt::format("{}: point {} is not finite", name, i));
+  }
+}
+
+Points spread_centers(const Points& points, double spacing, std::size_t most) {
+  Points centers{points.front()};
+  std::vector<double> squared(points.size(), std::numeric_limits<double>::infinity());
+  while (centers.size() < std::min(most, points.size())) {
+    std::size_t farthest = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      squared[i] = std::min(squared[i], (points[i] - centers.back()).squaredNorm());
+      if (squared[i] > squared[farthest]) farthest = i;
+    }
+    if (squared[farthest] < spacing * spacing) break;
+    centers.push_back(points[farthest]);
+  }
+  return centers;
+}
+
+Eigen::MatrixXd gaussians(const Points& points, const Points& centers, double width) {
+  Eigen::MatrixXd basis(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(centers.size()));
+  for (Eigen::Index c = 0; c < basis.cols(); ++c) {
+    for (Eigen::Index i = 0; i < basis.rows(); ++i) {
+      const double squared = (points[static_cast<std::size_t>(i)] - centers[static_cast<std::size_t>(c)]).squaredNorm();
+      basis(i, c) = std::exp(-0.5 * squared / (width * width));
+    }
+  }
+  return basis;
 }
 
 }  // namespace incise

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/geometry/types.hpp>
+#include <incise/registration/similarity.hpp>
 
 #include <span>
 #include <vector>
@@ -30,10 +31,35 @@ struct Measure {
 };
 [[nodiscard]] Measure measure_of(std::span<const Vec3> points);
 
+/// Maps transforms to and from the frame of a search: each cloud centred, in units of the target's radius. Scales do
+/// not change.
+struct SearchFrame {
+  Vec3 source_center;
+  Vec3 target_center;
+  double length = 1.0;
+
+  [[nodiscard]] Similarity inwards(const Similarity& t) const {
+    return {t.scale, t.rotation, (t(source_center) - target_center) / length};
+  }
+  [[nodiscard]] Similarity outwards(const Similarity& t) const {
+    return {t.scale, t.rotation, length * t.translation_mm + target_center - t.scale * (t.rotation * source_center)};
+  }
+};
+
 /// Returns (point - center) / length for every point.
 [[nodiscard]] Points normalised(std::span<const Vec3> points, const Vec3& center, double length);
 
 /// Whether a cloud with these variances (ascending) is a point or a line.
 [[nodiscard]] bool is_line(const Vec3& variances);
+
+/// @throws InvalidArgument without points, or for one that is not finite. @param name  of the cloud, for the message.
+void require_usable(std::span<const Vec3> points, const char* name);
+
+/// Returns centres spread evenly over the points: each next one is the farthest from those chosen, until all points are
+/// within `spacing` of a chosen one or `most` are chosen.
+[[nodiscard]] Points spread_centers(const Points& points, double spacing, std::size_t most);
+
+/// Returns a Gaussian of this width about each centre (a column) at each point (a row).
+[[nodiscard]] Eigen::MatrixXd gaussians(const Points& points, const Points& centers, double width);
 
 }  // namespace incise

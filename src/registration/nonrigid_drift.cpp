@@ -5,12 +5,9 @@
 #include <incise/core/expect.hpp>
 #include <incise/registration/nonrigid_drift.hpp>
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace incise {
 namespace {
@@ -18,34 +15,6 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 constexpr std::size_t kRows = 256;      // rows of the basis per chunk
 constexpr double kCenterSpacing = 0.5;  // in units of β
-
-/// Returns points spread evenly over a cloud: each next one is the farthest from those chosen, until all points are
-/// within `spacing` of a chosen one or `most` are chosen.
-Points spread_centers(const Points& points, double spacing, std::size_t most) {
-  Points centers{points.front()};
-  std::vector<double> squared(points.size(), std::numeric_limits<double>::infinity());
-  while (centers.size() < std::min(most, points.size())) {
-    std::size_t farthest = 0;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      squared[i] = std::min(squared[i], (points[i] - centers.back()).squaredNorm());
-      if (squared[i] > squared[farthest]) farthest = i;
-    }
-    if (squared[farthest] < spacing * spacing) break;
-    centers.push_back(points[farthest]);
-  }
-  return centers;
-}
-
-Matrix gaussians(std::span<const Vec3> points, const Points& centers, double width) {
-  Matrix basis(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(centers.size()));
-  for (Eigen::Index c = 0; c < basis.cols(); ++c) {
-    for (Eigen::Index i = 0; i < basis.rows(); ++i) {
-      const double squared = (points[static_cast<std::size_t>(i)] - centers[static_cast<std::size_t>(c)]).squaredNorm();
-      basis(i, c) = std::exp(-0.5 * squared / (width * width));
-    }
-  }
-  return basis;
-}
 
 /// The deformation as a sum of Gaussians, and its M-step.
 class SmoothField {

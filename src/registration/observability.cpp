@@ -14,9 +14,6 @@
 namespace incise {
 namespace {
 
-using Vec7 = Eigen::Matrix<double, 7, 1>;
-using Mat7 = Eigen::Matrix<double, 7, 7>;
-
 constexpr std::size_t kMostPoints = 3000;
 // The distances of neighbouring points share the error of their plane and the curvature of the surface, so the number
 // of independent ones is smaller than the number of pairs.

@@ -13,8 +13,7 @@ namespace incise {
 
 /// Sets the covariance (about `center`, with rms arm `length`) and the standard deviations that follow from it, except
 /// that of the weakest motion. Does not change what follows from the shapes alone (visible, sharpness).
-void set_covariance(PoseObservability& certificate, const Eigen::Matrix<double, 7, 7>& covariance, const Vec3& center,
-                    double length);
+void set_covariance(PoseObservability& certificate, const Mat7& covariance, const Vec3& center, double length);
 
 /// Sets the weakest motion and its standard deviation from the covariance. Turns and stretches are measured by how far
 /// they move points at the rms arm `length`.

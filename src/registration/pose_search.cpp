@@ -115,30 +115,15 @@ std::vector<Pose> distinct(std::vector<Pose> poses, std::span<const Vec3> source
   return kept;
 }
 
-/// Settings of `refine`: those of ICP, and the width of the score afterwards.
-struct Refinement {
-  ScaleRange scale;
-  double first_width = 0.0;
-  int steps = 0;
-  std::size_t points = 0;
-  double score_width = 0.0;
-};
-
 /// Improves every pose by ICP and scores it again.
-void refine(std::vector<Pose>& poses, const SampledSurface& source, const SampledSurface& target, const Refinement& how,
-            Workers& workers) {
-  const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), how.points);
-  IcpSettings settings;
-  settings.scale = how.scale;
-  settings.first_width = how.first_width;
-  settings.max_iterations = how.steps;
-  settings.max_points = how.points;
-  settings.tolerance = 5e-4;
+void refine(std::vector<Pose>& poses, const SampledSurface& source, const SampledSurface& target,
+            const IcpSettings& settings, double score_width, Workers& workers) {
+  const std::vector<std::size_t> asked = spread_indices(source.cloud.points.size(), settings.max_points);
   workers.for_each(poses.size(), 1, [&](std::size_t k) {
     Workers alone(1);
     const Icp refined = icp(source, target, poses[k].transform, settings, alone);
     if (!refined.is_degenerate) poses[k].transform = refined.transform;
-    poses[k].score = overlap_score(source, asked, target, poses[k].transform, how.score_width);
+    poses[k].score = overlap_score(source, asked, target, poses[k].transform, score_width);
   });
 }
 
@@ -199,10 +184,12 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
   }
   // Scores of rough poses rank them only roughly. Improving many of them with few points shows which deserve more work.
   poses = distinct(std::move(poses), source.cloud.points, settings.followed);
-  const Refinement few{settings.scale, 2.0 * kLastSigma, kFollowSteps, kFollowPoints, 2.0 * settings.score_width};
-  refine(poses, source, target, few, workers);
+  IcpSettings finish{settings.scale, 2.0 * kLastSigma, 5e-4, kFollowSteps, kFollowPoints};
+  refine(poses, source, target, finish, 2.0 * settings.score_width, workers);
   poses = distinct(std::move(poses), source.cloud.points, settings.refined);
-  refine(poses, source, target, {settings.scale, 2.0 * kLastSigma, 40, kFinePoints, settings.score_width}, workers);
+  finish.max_iterations = 40;
+  finish.max_points = kFinePoints;
+  refine(poses, source, target, finish, settings.score_width, workers);
   monitor.progress("searching poses", 1.0);
   search.poses = distinct(std::move(poses), source.cloud.points, settings.keep);
   return search;

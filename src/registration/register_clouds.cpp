@@ -16,7 +16,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace incise {
 namespace {
@@ -40,25 +39,8 @@ constexpr double kSettled = 0.003;
 constexpr double kSettledOrMoved = 0.02;
 constexpr double kAtLimit = 1e-6;           // relative distance up to which a scale is at an end of its range
 
-/// Maps transforms to and from the frame of the search: each cloud centred, in units of the target's radius.
-struct Frame {
-  Vec3 source_center;
-  Vec3 target_center;
-  double length = 1.0;
-
-  [[nodiscard]] Similarity inwards(const Similarity& t) const {
-    return {t.scale, t.rotation, (t(source_center) - target_center) / length};
-  }
-  [[nodiscard]] Similarity outwards(const Similarity& t) const {
-    return {t.scale, t.rotation, length * t.translation_mm + target_center - t.scale * (t.rotation * source_center)};
-  }
-};
-
 void require_usable(const PointCloud& cloud, const char* name) {
-  INCISE_REQUIRE(!cloud.points.empty(), fmt::format("{}: expected at least 1 point, found none", name));
-  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    INCISE_REQUIRE(cloud.points[i].allFinite(), fmt::format("{}: point {} is not finite", name, i));
-  }
+  incise::require_usable(cloud.points, name);
   INCISE_REQUIRE(cloud.normals.empty() || cloud.normals.size() == cloud.points.size(),
                  fmt::format("{}: expected no normals or one per point, found {} for {} points", name,
                              cloud.normals.size(), cloud.points.size()));
@@ -92,7 +74,7 @@ struct Candidate {
 
 class Registering {
  public:
-  Registering(const PointCloud& source, const PointCloud& target, const Frame& frame,
+  Registering(const PointCloud& source, const PointCloud& target, const SearchFrame& frame,
               const RegistrationSettings& settings, Workers& workers, Monitor& monitor)
       : frame_(frame),
         settings_(settings),
@@ -101,9 +83,8 @@ class Registering {
         source_({normalised(source.points, frame.source_center, frame.length), source.normals}, workers),
         target_({normalised(target.points, frame.target_center, frame.length), target.normals}, workers),
         asked_(spread_indices(source.points.size(), kScorePoints)) {
-    const double rough = std::hypot(roughness_mm(source_.cloud.points), roughness_mm(target_.cloud.points));
-    noise_ = rough;
-    score_width_ = std::max(0.7 * rough, kLeastScoreWidth);
+    noise_ = std::hypot(source_.roughness, target_.roughness);
+    score_width_ = std::max(0.7 * noise_, kLeastScoreWidth);
   }
 
   void run(Registration& result) {
@@ -130,20 +111,16 @@ class Registering {
 
  private:
   [[nodiscard]] PoseSearchSettings search_settings() const {
-    PoseSearchSettings search;
-    search.scale = settings_.scale;
-    search.outlier_weight = settings_.outlier_weight;
-    search.rotations = settings_.rotations;
-    search.score_width = 2.0 * score_width_;  // rough poses
-    return search;
+    return {.scale = settings_.scale,
+            .outlier_weight = settings_.outlier_weight,
+            .rotations = settings_.rotations,
+            .score_width = 2.0 * score_width_};  // rough poses
   }
 
   [[nodiscard]] IcpSettings finish_settings() const {
-    IcpSettings settings;
-    settings.scale = settings_.scale;
-    settings.first_width = kFinalWidth;
-    settings.max_iterations = std::min(settings_.max_iterations, kFinishSteps);
-    return settings;
+    return {.scale = settings_.scale,
+            .first_width = kFinalWidth,
+            .max_iterations = std::min(settings_.max_iterations, kFinishSteps)};
   }
 
   [[nodiscard]] double score_of(const Similarity& t) const {
@@ -167,10 +144,9 @@ class Registering {
   }
 
   Candidate by_drift(const Similarity& start) {
-    DriftSettings drift;
-    drift.scale = settings_.scale;
-    drift.outlier_weight = settings_.outlier_weight;
-    drift.max_iterations = settings_.max_iterations;
+    DriftSettings drift{.scale = settings_.scale,
+                        .outlier_weight = settings_.outlier_weight,
+                        .max_iterations = settings_.max_iterations};
     if (!settings_.start) drift.first_sigma = kFinalSigma;
     // If the ICP finish follows, the drift need not converge.
     if (settings_.finish_with_icp) drift.max_iterations = std::min(drift.max_iterations, kDriftSteps);
@@ -178,16 +154,14 @@ class Registering {
         rigid_drift(thinned(source_.cloud.points, settings_.drift_points),
                     thinned(target_.cloud.points, settings_.drift_points), start, drift, workers_, monitor_);
     if (done.outcome == DriftOutcome::Cancelled) throw_if_cancelled(monitor_, "registering");
-    Candidate candidate;
-    candidate.transform = done.T_target_source;
-    candidate.has_converged = done.outcome == DriftOutcome::Converged;
-    candidate.is_degenerate = done.outcome == DriftOutcome::Degenerate;
-    candidate.iterations = done.iterations;
-    candidate.sigma = done.sigma_mm;
-    candidate.matched = done.matched_share;
-    candidate.score = score_of(done.T_target_source);
-    candidate.width = std::max(2.5 * noise_, kLeastScoreWidth);
-    return candidate;
+    return {.transform = done.T_target_source,
+            .score = score_of(done.T_target_source),
+            .has_converged = done.outcome == DriftOutcome::Converged,
+            .is_degenerate = done.outcome == DriftOutcome::Degenerate,
+            .iterations = done.iterations,
+            .sigma = done.sigma_mm,
+            .matched = done.matched_share,
+            .width = std::max(2.5 * noise_, kLeastScoreWidth)};
   }
 
   Candidate by_icp(const Similarity& start) {
@@ -227,9 +201,7 @@ class Registering {
   /// Finds the best pose once more, together with the settling. Keeps the score without settling.
   std::optional<SettledPose> settled_from(Candidate& best) const {
     if (!(settings_.settling_mm > 0.0)) return std::nullopt;
-    SettlingSettings settings;
-    settings.scale = settings_.scale;
-    settings.largest = settings_.settling_mm / frame_.length;
+    const SettlingSettings settings{.scale = settings_.scale, .largest = settings_.settling_mm / frame_.length};
     SettledPose settled = settled_pose(source_, target_, best.transform, settings, workers_);
     best.iterations += settled.iterations;
     best.has_converged = best.has_converged && settled.has_converged && !settled.is_degenerate;
@@ -282,12 +254,9 @@ class Registering {
     for (const Candidate& candidate : candidates) consider(candidate.transform, candidate.score);
     // The search stops when its poses are good enough to be ranked: after convergence some of them coincide with the
     // best.
+    const IcpSettings settings{
+        .scale = settings_.scale, .first_width = kFinalWidth, .tolerance = 1e-3, .max_points = kRivalPoints};
     for (const Pose& pose : poses) {
-      IcpSettings settings;
-      settings.scale = settings_.scale;
-      settings.first_width = kFinalWidth;
-      settings.max_points = kRivalPoints;
-      settings.tolerance = 1e-3;
       const Icp done = icp(source_, target_, pose.transform, settings, workers_);
       if (!done.is_degenerate) consider(done.transform, score_of(done.transform));
     }
@@ -371,12 +340,12 @@ class Registering {
     c.weakest_sd_mm *= length;
     c.translation_sd_mm *= length;
     c.center_mm = length * c.center_mm + frame_.target_center;
-    Eigen::Matrix<double, 7, 1> units = Eigen::Matrix<double, 7, 1>::Ones();
+    Vec7 units = Vec7::Ones();
     units.segment<3>(3).setConstant(length);
     c.covariance = units.asDiagonal() * c.covariance * units.asDiagonal();
   }
 
-  const Frame frame_;
+  const SearchFrame frame_;
   const RegistrationSettings& settings_;
   Workers& workers_;
   Monitor& monitor_;
@@ -444,7 +413,7 @@ Registration register_clouds(const PointCloud& source, const PointCloud& target,
     }
   }
   if (!result.reasons.empty()) return result;
-  const Frame frame{source_measure.center, target_measure.center, target_measure.radius};
+  const SearchFrame frame{source_measure.center, target_measure.center, target_measure.radius};
   try {
     Registering(source, target, frame, settings, workers, monitor).run(result);
   } catch (const Cancelled& stop) {

@@ -1,13 +1,13 @@
 #include "registration/settling.hpp"
 
 #include "registration/icp.hpp"
+#include "registration/levels.hpp"
 
 #include <incise/core/median.hpp>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -18,7 +18,6 @@ using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
 using Vec6 = Eigen::Matrix<double, 6, 1>;
 using Mat6 = Eigen::Matrix<double, 6, 6>;
-using Vec7 = Eigen::Matrix<double, 7, 1>;
 
 constexpr std::size_t kMostSettlingPoints = 3000;
 constexpr std::size_t kMostCenters = 200;
@@ -31,11 +30,10 @@ constexpr double kFarthest = 0.15;       // from the target, in the clouds' unit
 constexpr double kWeightWidths = 2.5;    // width of Welsch's weight, in robust standard deviations
 constexpr double kSettlingPairsPerIndependent = 1.2;
 constexpr double kRidge = 1e-6;
-constexpr std::size_t kPatchesInAChunk = 32;
 
 /// A source point and its distance from the target's patch above or below it.
 struct Patch {
-  std::size_t row = 0;    // index into Asked::indices
+  std::size_t row = 0;    // index into Asked::cloud
   Vec3 place;             // position of the source point, without settling
   Vec3 normal;            // the source's
   double distance = 0.0;  // from the patch to `place` along the normal
@@ -44,49 +42,21 @@ struct Patch {
 
 /// The source points that are used, and the Gaussians of the settling.
 struct Asked {
-  std::vector<std::size_t> indices;
+  PointCloud cloud;
   Points centers;
   Vec3 up = Vec3::Zero();  // mean normal, source frame
   Matrix basis;            // points x centres
   Matrix cost;             // centres x centres
 };
 
-double gaussian(const Vec3& a, const Vec3& b, double range) {
-  return std::exp(-0.5 * (a - b).squaredNorm() / (range * range));
-}
-
-/// Returns centres spread evenly over the points: each next one is the farthest from those chosen.
-Points spread_centers(const PointCloud& cloud, const std::vector<std::size_t>& indices, double spacing) {
-  Points centers{cloud.points[indices.front()]};
-  std::vector<double> squared(indices.size(), std::numeric_limits<double>::infinity());
-  while (centers.size() < kMostCenters) {
-    std::size_t farthest = 0;
-    for (std::size_t i = 0; i < indices.size(); ++i) {
-      squared[i] = std::min(squared[i], (cloud.points[indices[i]] - centers.back()).squaredNorm());
-      if (squared[i] > squared[farthest]) farthest = i;
-    }
-    if (squared[farthest] < spacing * spacing) break;
-    centers.push_back(cloud.points[indices[farthest]]);
-  }
-  return centers;
-}
-
 Asked asked_of(const PointCloud& source, double range) {
   Asked asked;
-  asked.indices = spread_indices(source.points.size(), kMostSettlingPoints);
-  asked.centers = spread_centers(source, asked.indices, kSettlingCenterSpacing * range);
+  asked.cloud = subset(source, spread_indices(source.points.size(), kMostSettlingPoints));
+  asked.centers = spread_centers(asked.cloud.points, kSettlingCenterSpacing * range, kMostCenters);
   for (const Vec3& n : source.normals) asked.up += n;
   asked.up.normalize();
-  const auto rank = static_cast<Eigen::Index>(asked.centers.size());
-  asked.basis.resize(static_cast<Eigen::Index>(asked.indices.size()), rank);
-  asked.cost.resize(rank, rank);
-  for (Eigen::Index c = 0; c < rank; ++c) {
-    const Vec3& center = asked.centers[static_cast<std::size_t>(c)];
-    for (Eigen::Index i = 0; i < asked.basis.rows(); ++i)
-      asked.basis(i, c) = gaussian(source.points[asked.indices[static_cast<std::size_t>(i)]], center, range);
-    for (Eigen::Index k = 0; k < rank; ++k)
-      asked.cost(k, c) = gaussian(asked.centers[static_cast<std::size_t>(k)], center, range);
-  }
+  asked.basis = gaussians(asked.cloud.points, asked.centers, range);
+  asked.cost = gaussians(asked.centers, asked.centers, range);
   asked.cost.diagonal().array() += kRidge;
   return asked;
 }
@@ -129,11 +99,7 @@ class Settling {
  public:
   Settling(const SampledSurface& source, const SampledSurface& target, const Similarity& start,
            const SettlingSettings& settings, Workers& workers)
-      : source_(source),
-        target_(target),
-        settings_(settings),
-        workers_(workers),
-        asked_(asked_of(source.cloud, settings.range)) {
+      : target_(target), settings_(settings), workers_(workers), asked_(asked_of(source.cloud, settings.range)) {
     result_.transform = start;
     weights_ = Vector::Zero(static_cast<Eigen::Index>(asked_.centers.size()));
   }
@@ -154,33 +120,24 @@ class Settling {
   [[nodiscard]] std::vector<Patch> patches() const {
     const Vector settled = asked_.basis * weights_;
     const double radius = kPatch * target_.spacing;
-    std::vector<std::vector<Patch>> parts(Workers::chunk_count(asked_.indices.size(), kPatchesInAChunk));
-    workers_.for_chunks(
-        asked_.indices.size(), kPatchesInAChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-          for (std::size_t row = begin; row < end; ++row) {
-            const Vec3& y = source_.cloud.points[asked_.indices[row]];
-            Patch patch{row, result_.transform(y),
-                        result_.transform.rotation * source_.cloud.normals[asked_.indices[row]]};
-            const Vec3 there = result_.transform(y + settled[static_cast<Eigen::Index>(row)] * asked_.up);
-            const std::optional<Height> height = height_above(target_, there, patch.normal, radius);
-            if (!height || height->off_center > kRim || std::abs(height->value) > kFarthest) continue;
-            patch.distance = -height->value - patch.normal.dot(there - patch.place);
-            patch.weight = std::pow(1.0 - std::pow(height->off_center / kRim, 2), 2);
-            parts[chunk].push_back(patch);
-          }
-        });
-    std::vector<Patch> all;
-    for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
-    return all;
+    return collected(asked_.cloud.points.size(), workers_, [&](std::size_t row) -> std::optional<Patch> {
+      const Vec3& y = asked_.cloud.points[row];
+      Patch patch{row, result_.transform(y), result_.transform.rotation * asked_.cloud.normals[row]};
+      const Vec3 there = result_.transform(y + settled[static_cast<Eigen::Index>(row)] * asked_.up);
+      const std::optional<Height> height = height_above(target_, there, patch.normal, radius);
+      if (!height || height->off_center > kRim || std::abs(height->value) > kFarthest) return std::nullopt;
+      patch.distance = -height->value - patch.normal.dot(there - patch.place);
+      patch.weight = std::pow(1.0 - std::pow(height->off_center / kRim, 2), 2);
+      return patch;
+    });
   }
 
   [[nodiscard]] PointCloud settled_source(const Vector& raised) const {
     PointCloud cloud;
     const Vec3 up = result_.transform.rotation * asked_.up;
-    for (std::size_t row = 0; row < asked_.indices.size(); ++row) {
-      const std::size_t i = asked_.indices[row];
-      cloud.points.push_back(result_.transform(source_.cloud.points[i]) + raised[static_cast<Eigen::Index>(row)] * up);
-      cloud.normals.push_back(result_.transform.rotation * source_.cloud.normals[i]);
+    for (std::size_t i = 0; i < asked_.cloud.points.size(); ++i) {
+      cloud.points.push_back(result_.transform(asked_.cloud.points[i]) + raised[static_cast<Eigen::Index>(i)] * up);
+      cloud.normals.push_back(result_.transform.rotation * asked_.cloud.normals[i]);
     }
     return cloud;
   }
@@ -306,7 +263,6 @@ class Settling {
 
   static constexpr Eigen::Index kMotions = 7;
 
-  const SampledSurface& source_;
   const SampledSurface& target_;
   const SettlingSettings& settings_;
   Workers& workers_;

@@ -23,8 +23,7 @@ struct SettledPose {
   double apart_rms = 0.0;  ///< of the part of the settling, along the normals, that no change of the pose explains
   double apart_largest = 0.0;
   double noise = 0.0;            ///< robust standard deviation of the residual
-  Eigen::Matrix<double, 7, 7> covariance =
-      Eigen::Matrix<double, 7, 7>::Zero();  ///< as in PoseObservability, about `center`
+  Mat7 covariance = Mat7::Zero();  ///< as in PoseObservability, about `center`
   Vec3 center = Vec3::Zero();
   double length = 0.0;  ///< rms distance of the points from the centre
   bool has_converged = false;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 namespace incise {
@@ -71,9 +70,7 @@ std::vector<double> common_heights(const Points& around, const std::vector<Heigh
 
 ShapeResidual shape_residual(const SampledSurface& source, const SampledSurface& target, const Similarity& start,
                              const ScaleRange& scale, double settling, Workers& workers) {
-  SettlingSettings settings;
-  settings.scale = scale;
-  settings.largest = std::max(settling, kUsualSettling);
+  const SettlingSettings settings{.scale = scale, .largest = std::max(settling, kUsualSettling)};
   const SettledPose settled = settled_pose(source, target, start, settings, workers);
   if (settled.is_degenerate) return {};
   std::vector<double> sizes = common_heights(settled.settled.points, heights(settled.settled, target));

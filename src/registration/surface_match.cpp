@@ -8,7 +8,6 @@ namespace {
 
 constexpr int kNormalNeighbours = 16;
 constexpr double kLeastNormalAgreement = 0.5;  // cosine of 60 degrees
-constexpr std::size_t kPairsInAChunk = 64;
 
 PointCloud with_some_normals(PointCloud cloud, Workers& workers) {
   if (!cloud.normals.empty()) return cloud;
@@ -58,20 +57,6 @@ std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t inde
   const double limit = kEdgeSpacings * std::max(target.spacing, t.scale * source.spacing);
   if (apart.squaredNorm() - pair.distance * pair.distance > limit * limit) return std::nullopt;
   return pair;
-}
-
-/// Returns the pairs that find(i) finds for i in [0, count), in order.
-template <class Find>
-std::vector<SurfacePair> collected(std::size_t count, Workers& workers, const Find& find) {
-  std::vector<std::vector<SurfacePair>> parts(Workers::chunk_count(count, kPairsInAChunk));
-  workers.for_chunks(count, kPairsInAChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      if (const std::optional<SurfacePair> pair = find(i)) parts[chunk].push_back(*pair);
-    }
-  });
-  std::vector<SurfacePair> pairs;
-  for (const auto& part : parts) pairs.insert(pairs.end(), part.begin(), part.end());
-  return pairs;
 }
 
 }  // namespace

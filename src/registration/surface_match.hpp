@@ -7,9 +7,29 @@
 
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace incise {
+
+using Vec7 = Eigen::Matrix<double, 7, 1>;  ///< a small motion: rotation vector, translation, logarithm of the scale
+using Mat7 = Eigen::Matrix<double, 7, 7>;
+
+/// Returns what find(i), an optional, finds for i in [0, count), in order.
+template <class Find>
+[[nodiscard]] auto collected(std::size_t count, Workers& workers, const Find& find) {
+  constexpr std::size_t kInAChunk = 64;
+  using Found = std::vector<typename std::invoke_result_t<Find, std::size_t>::value_type>;
+  std::vector<Found> parts(Workers::chunk_count(count, kInAChunk));
+  workers.for_chunks(count, kInAChunk, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (const auto one = find(i)) parts[chunk].push_back(*one);
+    }
+  });
+  Found all;
+  for (const Found& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
 
 /// A cloud prepared as a surface for comparison: points, normals, spacing, roughness and a search structure.
 struct SampledSurface {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
-#include <incise/core/problem.hpp>
 #include <incise/registration/drift.hpp>
 
 namespace incise {
