@@ -11,13 +11,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace incise {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kShortMoveMm = 1e-6;  // a move that falls short by less counts as complete
 
 double positive_angle(double angle) {
   const double turned = std::fmod(angle, kTurn);
@@ -73,7 +73,6 @@ void bridge_gaps(const std::vector<double>& angles, Compensation& result) {
     const double behind = positive_angle(angles[i] - angles[before]);
     const double ahead = positive_angle(angles[after] - angles[i]);
     result.error_mm[i] = (known[before] * ahead + known[after] * behind) / (behind + ahead);
-    ++result.interpolated_waypoints;
   }
 }
 
@@ -111,24 +110,18 @@ void move_waypoints(const SurfaceView& view, const Vec2& center, const Compensat
                     Compensation& result) {
   const SafeRegion region{.close_margin_mm = settings.close_margin_mm,
                           .electrode_radius_mm = settings.electrode_radius_mm,
+                          .max_offset_mm = std::numeric_limits<double>::infinity(),
                           .rim_clearance_mm = settings.rim_clearance_mm,
                           .approach = settings.approach,
                           .axis_mode = settings.axis_mode};
   for (std::size_t i = 0; i < result.path.waypoints.size(); ++i) {
     Waypoint& waypoint = result.path.waypoints[i];
-    const Vec2 start = view.place_of(waypoint.position_mm);
+    const Vec2 outward = (view.place_of(waypoint.position_mm) - center).stableNormalized();
     const double wanted =
         -settings.relaxation * result.error_mm[i];  // too close (negative error): away from the tumour
-    const double sign = wanted < 0.0 ? -1.0 : 1.0;
-    const Vec2 heading = sign * (start - center).stableNormalized();
-    const Move move = move_over(start, heading, std::abs(wanted), wanted < 0.0, view, result.path.tumor_edge, region);
-    waypoint.position_mm = move.position_mm;
-    if (settings.axis_mode == AxisMode::SurfaceNormal) {
-      waypoint.axis = view.tool_axis(view.place_of(move.position_mm), settings.axis_mode);
-    }
-    const bool is_limited = std::abs(wanted) - move.length_mm > kShortMoveMm;
-    result.move_mm.push_back(sign * move.length_mm);
-    result.is_limited.push_back(is_limited ? 1 : 0);
+    const double reached = move_waypoint(waypoint, outward, wanted, view, result.path.tumor_edge, region);
+    result.move_mm.push_back(reached);
+    result.is_limited.push_back(std::abs(wanted) - std::abs(reached) > kMoveToleranceMm ? 1 : 0);
   }
 }
 

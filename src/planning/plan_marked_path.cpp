@@ -25,13 +25,7 @@ constexpr double kMarkOffSurfaceMm = 2.0;  // of the mark, which was measured on
 }
 
 ToolPath along_mark(const Contour& mark, const CloudSurface& surface, const MarkedPlan& plan) {
-  ToolPath path{.frame = PathFrame::Robot,
-                .kind = PathKind::Incise,
-                .is_closed = mark.is_closed,
-                .waypoints = {},
-                .tumor_edge = {},
-                .T_robot_sim = {},
-                .source_sha256 = {}};
+  ToolPath path{.frame = PathFrame::Robot, .is_closed = mark.is_closed};
   const PlanSettings& settings = plan.settings;
   const bool turns_round = !mark.is_closed && mark.points.back().dot(settings.start_direction) >
                                                   mark.points.front().dot(settings.start_direction);

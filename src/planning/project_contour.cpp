@@ -98,15 +98,11 @@ Contour project(const Contour& drawn, const SurfaceQuery& surface, const Vec3& a
 
 Contour project_tumor_edge(const Contour& edge, const SurfaceQuery& surface, const Vec3& approach,
                            double tolerance_mm) {
-  Contour closed = edge;
-  closed.is_closed = true;
-  return project(closed, surface, approach, tolerance_mm, kEdgeWords);
+  return project({edge.points, true}, surface, approach, tolerance_mm, kEdgeWords);
 }
 
 Contour project_line(const Contour& line, const SurfaceQuery& surface, const Vec3& approach, double tolerance_mm) {
-  Contour open = line;
-  open.is_closed = false;
-  return project(open, surface, approach, tolerance_mm, kLineWords);
+  return project({line.points, false}, surface, approach, tolerance_mm, kLineWords);
 }
 
 }  // namespace incise

@@ -45,7 +45,7 @@ class LayDown {
   LayDown(const MeasuredSurface& surface, const ProjectSettings& settings, const std::filesystem::path& name)
       : surface_(surface), settings_(settings), name_(name) {}
 
-  CloudPlace operator()(const Vec3& p, const std::string& what) {
+  void operator()(const Vec3& p, const std::string& what) {
     const std::optional<CloudPlace> place = surface_.at(p);
     const auto refuse = [&](const std::string& found, const std::string& expected) {
       throw DataError(name_, fmt::format("{} at {} mm", what, in_words(p)), found, expected,
@@ -66,18 +66,16 @@ class LayDown {
     result.max_shift_mm = std::max(result.max_shift_mm, std::abs(shift));
     result.mean_shift_mm += shift;
     result.bridged += place->gap_mm > kBridgedMm ? 1 : 0;
-    ++count_;
     in_picture_.push_back(frame_.to_view(p).head<2>());
     before_.push_back(p);
     shifts_.push_back(shift);
     normals_.push_back(place->normal);
     names_.push_back(what);
-    return *place;
   }
   /// Returns the k-th point, moved by the average of the shifts around it.
   Vec3 smoothed(std::size_t k) {
     if (settings_.smoothing_mm == 0.0 || !surface_.is_cloud()) return before_[k] - shifts_[k] * surface_.approach();
-    const double average = average_shift(k);
+    const double average = averaged(k, [this](std::size_t i) { return Vec3(shifts_[i], 0.0, 0.0); }).x();
     const double aside = shifts_[k] - average;
     if (std::abs(aside) > kMostAsideMm) {
       throw DataError(
@@ -102,19 +100,15 @@ class LayDown {
   }
   [[nodiscard]] const Vec3& normal(std::size_t k) const { return normals_[k]; }
   ProjectedPath finish() {
-    if (count_ > 0) {
-      result.mean_shift_mm /= static_cast<double>(count_);
-      result.shift_noise_mm = std::sqrt(result.shift_noise_mm / static_cast<double>(count_));
+    if (const auto count = static_cast<double>(shifts_.size()); count > 0.0) {
+      result.mean_shift_mm /= count;
+      result.shift_noise_mm = std::sqrt(result.shift_noise_mm / count);
     }
     return result;
   }
   ProjectedPath result;
 
  private:
-  [[nodiscard]] double average_shift(std::size_t k) const {
-    return averaged(k, [this](std::size_t i) { return Vec3(shifts_[i], 0.0, 0.0); }).x();
-  }
-
   /// Smooths three numbers per point: their value at the k-th point on planes fitted to the points around it.
   template <class ValueOf>
   [[nodiscard]] Vec3 averaged(std::size_t k, const ValueOf& value_of) const {
@@ -142,7 +136,6 @@ class LayDown {
   std::vector<double> shifts_;  // along the approach, mm
   Points normals_;              // of the surface, against the approach
   std::vector<std::string> names_;
-  std::size_t count_ = 0;
 };
 
 /// Returns the tool's course before projection, in the robot's frame.
@@ -218,9 +211,9 @@ ProjectedPath project_path(const ToolPath& path, const Mat4& T_robot_sim, const 
   result.tumor_edge.is_closed = path.tumor_edge.is_closed;
   const std::size_t edge = path.tumor_edge.points.size();
   for (std::size_t i = 0; i < edge; ++i)
-    static_cast<void>(lay_down(similarity * path.tumor_edge.points[i], fmt::format("tumour edge point {}", i)));
+    lay_down(similarity * path.tumor_edge.points[i], fmt::format("tumour edge point {}", i));
   for (const Waypoint& wanted : course_of(path, similarity, surface.approach(), settings)) {
-    static_cast<void>(lay_down(wanted.position_mm, fmt::format("waypoint {}", result.waypoints.size())));
+    lay_down(wanted.position_mm, fmt::format("waypoint {}", result.waypoints.size()));
     result.waypoints.push_back(wanted);
   }
   for (std::size_t i = 0; i < edge; ++i) result.tumor_edge.points.push_back(lay_down.smoothed(i));

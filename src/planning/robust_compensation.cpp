@@ -15,10 +15,6 @@ constexpr double kHighestLogPrice = 12.0;  // ln(price of a mm of expected short
 constexpr int kShortenings = 6;
 constexpr double kSameWeight = 1e-9;
 
-Eigen::VectorXd as_vector(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
 /// Sum of squared second differences round the ring, as a matrix.
 Eigen::MatrixXd roughness(Eigen::Index n) {
   Eigen::MatrixXd second = -2.0 * Eigen::MatrixXd::Identity(n, n);

@@ -11,11 +11,13 @@ namespace incise {
 namespace {
 
 constexpr int kShareBisections = 60;
-constexpr double kMoveToleranceMm = 1e-6;
 /// Distance by which a move stays inside a limit to which the finished path is then held: more than rounding.
 constexpr double kLimitSlackMm = 1e-6;
 
-}  // namespace
+struct Move {
+  Vec3 position_mm;
+  double length_mm = 0.0;  // straight distance in space, >= 0
+};
 
 Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is_inward, const SurfaceView& view,
                const Contour& edge, const SafeRegion& region) {
@@ -49,6 +51,22 @@ Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is
   return best;
 }
 
+}  // namespace
+
+double move_waypoint(Waypoint& waypoint, const Vec2& outward, double wanted_mm, const SurfaceView& view,
+                     const Contour& edge, const SafeRegion& region) {
+  const bool is_inward = wanted_mm < 0.0;
+  const double sign = is_inward ? -1.0 : 1.0;
+  const double length = std::min(std::abs(wanted_mm), region.max_offset_mm);
+  const Move move =
+      move_over(view.place_of(waypoint.position_mm), sign * outward, length, is_inward, view, edge, region);
+  waypoint.position_mm = move.position_mm;
+  if (region.axis_mode == AxisMode::SurfaceNormal) {
+    waypoint.axis = view.tool_axis(view.place_of(move.position_mm), region.axis_mode);
+  }
+  return sign * move.length_mm;
+}
+
 MovablePath::MovablePath(const ToolPath& intended, const SurfaceQuery& surface, const SafeRegion& region)
     : intended_(intended), surface_(surface), region_(region), view_(surface, region.approach) {
   const Contour& edge = intended_.tumor_edge;
@@ -67,18 +85,10 @@ MovablePath::Moved MovablePath::at(const std::vector<double>& offset_mm) const {
   Moved moved{intended_, {}, {}};
   moved.path.source_sha256.clear();  // it no longer matches the file
   for (std::size_t i = 0; i < offset_mm.size(); ++i) {
-    Waypoint& waypoint = moved.path.waypoints[i];
-    const bool is_inward = offset_mm[i] < 0.0;
-    const double sign = is_inward ? -1.0 : 1.0;
-    const double length = std::min(std::abs(offset_mm[i]), region_.max_offset_mm);
-    const Move move = move_over(view_.place_of(waypoint.position_mm), sign * headings_[i], length, is_inward, view_,
-                                intended_.tumor_edge, region_);
-    waypoint.position_mm = move.position_mm;
-    if (region_.axis_mode == AxisMode::SurfaceNormal) {
-      waypoint.axis = view_.tool_axis(view_.place_of(move.position_mm), region_.axis_mode);
-    }
-    moved.offset_mm.push_back(sign * move.length_mm);
-    moved.is_limited.push_back(std::abs(offset_mm[i]) - move.length_mm > kMoveToleranceMm ? 1 : 0);
+    const double reached_mm =
+        move_waypoint(moved.path.waypoints[i], headings_[i], offset_mm[i], view_, intended_.tumor_edge, region_);
+    moved.offset_mm.push_back(reached_mm);
+    moved.is_limited.push_back(std::abs(offset_mm[i]) - std::abs(reached_mm) > kMoveToleranceMm ? 1 : 0);
   }
   return moved;
 }

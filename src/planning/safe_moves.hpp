@@ -6,17 +6,14 @@
 
 namespace incise {
 
-/// A move of a waypoint over the surface.
-struct Move {
-  Vec3 position_mm;
-  double length_mm = 0.0;  ///< straight distance in space, mm, >= 0
-};
+/// Falling short of a move by no more than this is rounding.
+inline constexpr double kMoveToleranceMm = 1e-6;
 
-/// Moves from `start` over the surface in unit direction `heading` of the picture, by `length_mm` in space or as far as
-/// the region allows: clear of the surface's rim and, inwards, with its margin from the edge.
-/// @pre `start` shows the surface.
-[[nodiscard]] Move move_over(const Vec2& start, const Vec2& heading, double length_mm, bool is_inward,
-                             const SurfaceView& view, const Contour& edge, const SafeRegion& region);
+/// Moves a waypoint over the surface by `wanted_mm` in space, along unit direction `outward` of the picture (inwards if
+/// below 0), or as far as the region allows: clear of the surface's rim and, inwards, with its margin from the edge.
+/// Returns the signed distance reached, mm. @pre the waypoint shows the surface.
+[[nodiscard]] double move_waypoint(Waypoint& waypoint, const Vec2& outward, double wanted_mm, const SurfaceView& view,
+                                   const Contour& edge, const SafeRegion& region);
 
 /// The intended path, and the rays along which its waypoints move: away from the nearest point of the tumour edge, in
 /// the picture.

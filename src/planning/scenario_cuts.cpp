@@ -23,8 +23,7 @@ ScenarioCuts::ScenarioCuts(const ToolPath& intended, const SurfaceQuery& surface
     : intended_(intended),
       scenarios_(scenarios),
       measure_(measure),
-      expected_residual_mm_(Eigen::Map<const Eigen::VectorXd>(residual.mean_mm.data(),
-                                                              static_cast<Eigen::Index>(residual.mean_mm.size()))),
+      expected_residual_mm_(as_vector(residual.mean_mm)),
       settings_(settings),
       course_(intended),
       movable_(intended, surface, settings.region),
@@ -65,9 +64,7 @@ LinearScenario ScenarioCuts::linear(std::size_t place, const PathErrors& errors)
   for (double& error : expected) error += scenarios_[place].bias_mm;
   const std::vector<double> at_waypoints = course_.average(along_mm, expected, settings_.smoothing_mm).value;
   const TissueResponse response(course_, settings_.shift_lags * errors.lag_mm, settings_.spread_lags * errors.lag_mm);
-  return {place, scenarios_[place].weight / all_weights_,
-          Eigen::Map<const Eigen::VectorXd>(at_waypoints.data(), static_cast<Eigen::Index>(at_waypoints.size())) +
-              expected_residual_mm_,
+  return {place, scenarios_[place].weight / all_weights_, as_vector(at_waypoints) + expected_residual_mm_,
           response.matrix()};
 }
 

@@ -18,6 +18,10 @@ struct LinearScenario {
   Eigen::MatrixXd response;
 };
 
+[[nodiscard]] inline Eigen::VectorXd as_vector(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
 /// Returns the scenarios' errors after a move of the waypoints, mm.
 [[nodiscard]] std::vector<ScenarioErrors> moved_errors(const std::vector<LinearScenario>& scenarios,
                                                        const Eigen::VectorXd& move);

@@ -7,7 +7,6 @@
 #include <incise/geometry/tool_path.hpp>
 
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 

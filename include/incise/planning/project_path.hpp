@@ -1,7 +1,6 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
-#include <incise/core/problem.hpp>
 #include <incise/geometry/cloud_surface.hpp>
 #include <incise/geometry/surface_query.hpp>
 #include <incise/geometry/tool_path.hpp>

@@ -2,7 +2,6 @@
 
 #include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
-#include <incise/core/problem.hpp>
 #include <incise/evaluation/t_tests.hpp>
 #include <incise/planning/converging_compensation.hpp>
 
@@ -10,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
