@@ -38,4 +38,10 @@ struct InkMap {
   return (1 - b) * ((1 - a) * top[0] + a * top[1]) + b * ((1 - a) * low[0] + a * low[1]);
 }
 
+/// Returns whether a mask, 8 bits, is set at the pixel nearest to p; false outside the mask.
+[[nodiscard]] inline bool covers(const cv::Mat& mask, const Vec2& p) {
+  const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
+  return cv::Rect(0, 0, mask.cols, mask.rows).contains(at) && mask.at<std::uint8_t>(at) != 0;
+}
+
 }  // namespace incise::imaging_detail

@@ -35,10 +35,7 @@ Profile profile_at(const cv::Mat& map, const Vec2& p, const Vec2& normal, double
 
 bool has_glare(const cv::Mat& glare, const Vec2& p, const Vec2& normal, double from, double to) {
   for (double s = from; s <= to; s += 1.0) {
-    const Vec2 q = p + s * normal;
-    const int u = static_cast<int>(std::lround(q.x()));
-    const int v = static_cast<int>(std::lround(q.y()));
-    if (u >= 0 && v >= 0 && u < glare.cols && v < glare.rows && glare.at<std::uint8_t>(v, u) != 0) return true;
+    if (covers(glare, p + s * normal)) return true;
   }
   return false;
 }

@@ -1,7 +1,6 @@
 #include "imaging/line_tracing.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -63,78 +62,6 @@ Line border_of(const cv::Mat& places, int place, const cv::Mat& distance) {
   return line;
 }
 
-}  // namespace
-
-cv::Mat ink_mask(const InkMap& map) {
-  constexpr double kGreyIsNoInk = 0.06;  // colourless places on coloured tissue do not count
-  return without_specks(map.likelihood > std::max(0.5, kGreyIsNoInk / map.contrast), kLeastSpeckPixels);
-}
-
-cv::Mat without_specks(const cv::Mat& above, int least_pixels) {
-  cv::Mat labels, stats, centers;
-  const int count = cv::connectedComponentsWithStats(above, labels, stats, centers, 8, CV_32S);
-  cv::Mat mask(above.size(), CV_8U, cv::Scalar(0));
-  if (count <= 1) return mask;
-  std::vector<std::uint8_t> is_kept(static_cast<std::size_t>(count), 0);
-  for (int i = 1; i < count; ++i)
-    is_kept[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least_pixels ? 255 : 0;
-  for (int v = 0; v < mask.rows; ++v) {
-    const auto* from = labels.ptr<int>(v);
-    auto* to = mask.ptr<std::uint8_t>(v);
-    for (int u = 0; u < mask.cols; ++u) to[u] = is_kept[static_cast<std::size_t>(from[u])];
-  }
-  return mask;
-}
-
-std::optional<MaskWindow> window_of(const cv::Mat& mask, int rim_px) {
-  const cv::Rect box = cv::boundingRect(mask);
-  if (box.empty()) return std::nullopt;
-  MaskWindow window;
-  cv::copyMakeBorder(mask(box), window.mask, rim_px, rim_px, rim_px, rim_px, cv::BORDER_CONSTANT, cv::Scalar(0));
-  window.corner_px = Vec2(box.x - rim_px, box.y - rim_px);
-  window.ink_pixels = cv::countNonZero(mask(box));
-  return window;
-}
-
-RollingResult roll_inside(const MaskWindow& window, double disc_radius_px) {
-  RollingResult result;
-  const cv::Mat distance = distance_to_ink(window.mask);
-  const cv::Mat free = distance > disc_radius_px;
-  cv::Mat places, stats, centers;
-  const int count = cv::connectedComponentsWithStats(free, places, stats, centers, 4, CV_32S);
-  const int outside = places.at<int>(0, 0);
-  struct Place {
-    int number;
-    double radius_px;
-  };
-  std::vector<Place> found;
-  for (int i = 1; i < count; ++i) {
-    if (i == outside) continue;
-    found.push_back({i, std::sqrt(stats.at<int>(i, cv::CC_STAT_AREA) / std::numbers::pi) + disc_radius_px});
-  }
-  if (found.empty()) return result;
-  std::stable_sort(found.begin(), found.end(),
-                   [](const Place& a, const Place& b) { return a.radius_px > b.radius_px; });
-  result.radius_px = found.front().radius_px;
-  const auto is_ring = [&](const Place& place) {
-    return place.radius_px >= kRingLikeness * result.radius_px && place.radius_px > 1.5 * disc_radius_px;
-  };
-  result.rings = static_cast<std::size_t>(std::count_if(found.begin(), found.end(), is_ring));
-  if (result.rings > 1) {
-    result.second_radius_px = found[1].radius_px;
-    cv::Mat pieces;
-    cv::connectedComponents(cv::Mat(free == 0), pieces, 8, CV_32S);
-    result.rings_touch =
-        neighbor_piece(pieces, places, found[0].number) == neighbor_piece(pieces, places, found[1].number);
-  }
-  result.inner_border = border_of(places, found.front().number, distance);
-  for (Vec2& p : result.inner_border) p += window.corner_px;
-  if (signed_area(result.inner_border) < 0.0) std::reverse(result.inner_border.begin(), result.inner_border.end());
-  return result;
-}
-
-namespace {
-
 /// Shortest ways from one cell of a coarse grid to all others. A cell costs more the farther it is from ink; cells of
 /// negative cost are closed.
 struct Ways {
@@ -176,6 +103,76 @@ Ways ways_from(int start, const cv::Mat& cost) {
 }
 
 }  // namespace
+
+cv::Mat ink_mask(const InkMap& map) {
+  constexpr double kGreyIsNoInk = 0.06;  // colourless places on coloured tissue do not count
+  return without_specks(map.likelihood > std::max(0.5, kGreyIsNoInk / map.contrast), kLeastSpeckPixels);
+}
+
+cv::Mat without_specks(const cv::Mat& above, int least_pixels) {
+  cv::Mat labels, stats, centers;
+  const int count = cv::connectedComponentsWithStats(above, labels, stats, centers, 8, CV_32S);
+  std::vector<std::uint8_t> is_kept(static_cast<std::size_t>(count), 0);
+  for (int i = 1; i < count; ++i)
+    is_kept[static_cast<std::size_t>(i)] = stats.at<int>(i, cv::CC_STAT_AREA) >= least_pixels ? 255 : 0;
+  return by_piece(labels, is_kept);
+}
+
+cv::Mat by_piece(const cv::Mat& pieces, const std::vector<std::uint8_t>& values) {
+  cv::Mat mask(pieces.size(), CV_8U);
+  for (int v = 0; v < mask.rows; ++v) {
+    const auto* from = pieces.ptr<int>(v);
+    auto* to = mask.ptr<std::uint8_t>(v);
+    for (int u = 0; u < mask.cols; ++u) to[u] = values[static_cast<std::size_t>(from[u])];
+  }
+  return mask;
+}
+
+std::optional<MaskWindow> window_of(const cv::Mat& mask, int rim_px) {
+  const cv::Rect box = cv::boundingRect(mask);
+  if (box.empty()) return std::nullopt;
+  MaskWindow window;
+  cv::copyMakeBorder(mask(box), window.mask, rim_px, rim_px, rim_px, rim_px, cv::BORDER_CONSTANT, cv::Scalar(0));
+  window.corner_px = Vec2(box.x - rim_px, box.y - rim_px);
+  return window;
+}
+
+RollingResult roll_inside(const MaskWindow& window, double disc_radius_px) {
+  RollingResult result;
+  const cv::Mat distance = distance_to_ink(window.mask);
+  const cv::Mat free = distance > disc_radius_px;
+  cv::Mat places, stats, centers;
+  const int count = cv::connectedComponentsWithStats(free, places, stats, centers, 4, CV_32S);
+  const int outside = places.at<int>(0, 0);
+  struct Place {
+    int number;
+    double radius_px;
+  };
+  std::vector<Place> found;
+  for (int i = 1; i < count; ++i) {
+    if (i == outside) continue;
+    found.push_back({i, std::sqrt(stats.at<int>(i, cv::CC_STAT_AREA) / std::numbers::pi) + disc_radius_px});
+  }
+  if (found.empty()) return result;
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Place& a, const Place& b) { return a.radius_px > b.radius_px; });
+  result.radius_px = found.front().radius_px;
+  const auto is_ring = [&](const Place& place) {
+    return place.radius_px >= kRingLikeness * result.radius_px && place.radius_px > 1.5 * disc_radius_px;
+  };
+  result.rings = static_cast<std::size_t>(std::count_if(found.begin(), found.end(), is_ring));
+  if (result.rings > 1) {
+    result.second_radius_px = found[1].radius_px;
+    cv::Mat pieces;
+    cv::connectedComponents(cv::Mat(free == 0), pieces, 8, CV_32S);
+    result.rings_touch =
+        neighbor_piece(pieces, places, found[0].number) == neighbor_piece(pieces, places, found[1].number);
+  }
+  result.inner_border = border_of(places, found.front().number, distance);
+  for (Vec2& p : result.inner_border) p += window.corner_px;
+  if (signed_area(result.inner_border) < 0.0) std::reverse(result.inner_border.begin(), result.inner_border.end());
+  return result;
+}
 
 Line longest_way(const MaskWindow& window, double bridge_px) {
   const int factor = std::max(1, static_cast<int>(bridge_px / 3.0));

@@ -25,12 +25,13 @@ void smooth(Line& line, bool is_closed, int passes);
 [[nodiscard]] cv::Mat ink_mask(const InkMap& map);
 /// Returns the mask without connected pieces of fewer than `least_pixels` pixels.
 [[nodiscard]] cv::Mat without_specks(const cv::Mat& above, int least_pixels);
+/// Returns the value of each pixel's piece, 8 bits. @param pieces  number of each pixel's piece, 32 bits.
+[[nodiscard]] cv::Mat by_piece(const cv::Mat& pieces, const std::vector<std::uint8_t>& values);
 
 /// The part of the picture that a mask fills, and its position.
 struct MaskWindow {
   cv::Mat mask;  ///< with a rim of zeros
   Vec2 corner_px = Vec2::Zero();
-  double ink_pixels = 0.0;
 };
 /// Returns nullopt for an empty mask.
 [[nodiscard]] std::optional<MaskWindow> window_of(const cv::Mat& mask, int rim_px);

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace incise {
 namespace imaging_detail {
@@ -130,11 +129,6 @@ std::vector<Run> unseen_runs(const std::vector<bool>& is_seen, bool is_closed) {
   return runs;
 }
 
-bool covers(const cv::Mat& mask, const Vec2& p) {
-  const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
-  return !mask.empty() && cv::Rect(0, 0, mask.cols, mask.rows).contains(at) && mask.at<std::uint8_t>(at) != 0;
-}
-
 LineGap gap_of(const Run& run, const Line& line, const cv::Mat& hidden, const cv::Mat& glare, double mm_per_pixel) {
   const std::size_t n = line.size();
   LineGap gap{.from_px = line[run.first], .to_px = line[(run.first + run.count - 1) % n]};
@@ -191,13 +185,8 @@ MarkedLine trace_marked_line(const InkMap& map, const cv::Mat& mask, const cv::M
   if (!start.is_ring) trim_unseen_ends(line);
   if (line.points.size() < 4) refuse(name, fmt::format("{}, only spots", none), expected);
 
-  MarkedLine result{.points_px = line.points,
-                    .is_closed = start.is_ring,
-                    .gaps = {},
-                    .width_px = line.width_px,
-                    .contrast = map.contrast,
-                    .longest_unseen_mm = 0.0,
-                    .gap_tolerance_mm = 0.0};
+  MarkedLine result{
+      .points_px = line.points, .is_closed = start.is_ring, .width_px = line.width_px, .contrast = map.contrast};
   std::vector<Run> runs = unseen_runs(line.is_seen, start.is_ring);
   std::stable_sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.count > b.count; });
   result.gap_tolerance_mm = kGapToleranceMm + kGapTolerancePx * settings.mm_per_pixel;

@@ -90,6 +90,25 @@ float share(float hu, float inside, float outside, float otherwise) {
   return std::clamp((hu - outside) / (inside - outside), 0.0F, 1.0F);
 }
 
+constexpr int kSamples = 6;  // along each edge of a cell that the surface crosses
+
+/// Returns the number of samples in a cell that reach the level.
+int samples_within(const std::array<double, 8>& corner, double level) {
+  int count = 0;
+  for (int c = 0; c < kSamples; ++c)
+    for (int b = 0; b < kSamples; ++b) {
+      const double z = (c + 0.5) / kSamples;
+      const double y = (b + 0.5) / kSamples;
+      const auto at_x = [&](std::size_t x) {
+        return (1 - z) * ((1 - y) * corner[x] + y * corner[x + 2]) + z * ((1 - y) * corner[x + 4] + y * corner[x + 6]);
+      };
+      const double first = at_x(0);
+      const double last = at_x(1);
+      for (int a = 0; a < kSamples; ++a) count += first + (last - first) * (a + 0.5) / kSamples >= level ? 1 : 0;
+    }
+  return count;
+}
+
 }  // namespace
 
 GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mask& body,
@@ -123,29 +142,6 @@ GrayVolume occupancy_from_gray(const CtVolume& hu, const Mask& region, const Mas
       }
   return occupancy;
 }
-
-namespace {
-
-constexpr int kSamples = 6;  // along each edge of a cell that the surface crosses
-
-/// Returns the number of samples in a cell that reach the level.
-int samples_within(const std::array<double, 8>& corner, double level) {
-  int count = 0;
-  for (int c = 0; c < kSamples; ++c)
-    for (int b = 0; b < kSamples; ++b) {
-      const double z = (c + 0.5) / kSamples;
-      const double y = (b + 0.5) / kSamples;
-      const auto at_x = [&](std::size_t x) {
-        return (1 - z) * ((1 - y) * corner[x] + y * corner[x + 2]) + z * ((1 - y) * corner[x + 4] + y * corner[x + 6]);
-      };
-      const double first = at_x(0);
-      const double last = at_x(1);
-      for (int a = 0; a < kSamples; ++a) count += first + (last - first) * (a + 0.5) / kSamples >= level ? 1 : 0;
-    }
-  return count;
-}
-
-}  // namespace
 
 double iso_volume_mm3(const GrayVolume& values, double level, Workers& workers) {
   const VolumeGrid& grid = values.grid;

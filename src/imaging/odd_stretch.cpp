@@ -33,11 +33,6 @@ double grey_at(const cv::Mat& grey, const Vec2& p) {
   return grey.at<std::uint8_t>(v, u) + 1.0;
 }
 
-bool is_hidden_at(const cv::Mat& hidden, const Vec2& p) {
-  const cv::Point at(static_cast<int>(std::lround(p.x())), static_cast<int>(std::lround(p.y())));
-  return !hidden.empty() && cv::Rect(0, 0, hidden.cols, hidden.rows).contains(at) && hidden.at<std::uint8_t>(at) != 0;
-}
-
 /// Returns the features of every point; unknown where something covers the line.
 Values features_of(const cv::Mat& grey, const InkMap& map, const MarkedLine& line, const cv::Mat& hidden,
                    LineEdge edge) {
@@ -53,7 +48,7 @@ Values features_of(const cv::Mat& grey, const InkMap& map, const MarkedLine& lin
     bool is_hidden = false;
     for (double s = from; s <= reach; s += kStep) {
       const Vec2 q = p + s * normal;
-      is_hidden = is_hidden || is_hidden_at(hidden, q);
+      is_hidden = is_hidden || covers(hidden, q);
       const double likelihood = sampled(map.likelihood, q.x(), q.y());
       strength = std::max(strength, likelihood);
       if (likelihood <= 0.5) continue;

@@ -14,10 +14,10 @@ namespace {
 constexpr int kBesidePx = 12;          // reach of a line's own blur and of JPEG's blocks
 constexpr int kLeastPlacePixels = 12;  // smaller places are noise
 
-std::vector<cv::Point> pixels_along(const std::vector<Vec2>& line) {
+/// Returns a line's pixels, counted from `corner`.
+std::vector<cv::Point> pixels_along(const std::vector<Vec2>& line, const cv::Point& corner = {}) {
   std::vector<cv::Point> points;
-  points.reserve(line.size());
-  for (const Vec2& p : line) points.emplace_back(cvRound(p.x()), cvRound(p.y()));
+  for (const Vec2& p : line) points.push_back(cv::Point(cvRound(p.x()), cvRound(p.y())) - corner);
   return points;
 }
 
@@ -25,11 +25,10 @@ std::vector<cv::Point> pixels_along(const std::vector<Vec2>& line) {
 /// beyond the reach of blur, is something else.
 void wipe_own_ink(cv::Mat& ink, const CheckedLine& checked, const cv::Point& corner) {
   const std::vector<Vec2>& line = checked.line.points_px;
-  std::vector<cv::Point> points = pixels_along(line);
-  for (cv::Point& p : points) p -= corner;
   const bool is_band = checked.edge == LineEdge::Inner;
   const int width = static_cast<int>(checked.line.width_px);
-  cv::polylines(ink, points, checked.line.is_closed, cv::Scalar(0), (is_band ? 0 : width) + kBesidePx);
+  cv::polylines(ink, pixels_along(line, corner), checked.line.is_closed, cv::Scalar(0),
+                (is_band ? 0 : width) + kBesidePx);
   if (!is_band) return;
   const std::size_t n = line.size();
   const Vec2 origin(corner.x, corner.y);
@@ -64,8 +63,7 @@ Crop crop_to_ink(const CheckedLine& checked) {
   const cv::Rect box = cv::boundingRect(checked.mask);
   cv::copyMakeBorder(checked.mask(box), crop.mask, 1, 1, 1, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
   crop.corner = {box.x - 1, box.y - 1};
-  crop.line = pixels_along(checked.line.points_px);
-  for (cv::Point& p : crop.line) p -= crop.corner;
+  crop.line = pixels_along(checked.line.points_px, crop.corner);
   return crop;
 }
 
@@ -92,13 +90,7 @@ cv::Mat ink_of_line(const CheckedLine& checked, const Crop& crop) {
     }
   }
   is_own[0] = 0;
-  cv::Mat own(pieces.size(), CV_8U);
-  for (int v = 0; v < pieces.rows; ++v) {
-    const auto* piece = pieces.ptr<int>(v);
-    auto* to = own.ptr<std::uint8_t>(v);
-    for (int u = 0; u < pieces.cols; ++u) to[u] = is_own[static_cast<std::size_t>(piece[u])];
-  }
-  return own;
+  return by_piece(pieces, is_own);
 }
 
 /// A place that ink encloses.
@@ -249,14 +241,9 @@ std::vector<PhotoMark> marks_beside(const CheckedLine& checked, const cv::Mat& i
   cv::Rect box(0, 0, ink.cols, ink.rows);
   if (within != nullptr) box &= cv::boundingRect(pixels_along(*within));
   cv::Mat elsewhere = ink(box).clone(), labels, stats, centers;
-  const auto in_box = [&](const std::vector<Vec2>& line) {
-    std::vector<cv::Point> points = pixels_along(line);
-    for (cv::Point& p : points) p -= box.tl();
-    return points;
-  };
   if (within != nullptr) {
     cv::Mat inside = cv::Mat::zeros(elsewhere.size(), elsewhere.type());
-    cv::fillPoly(inside, std::vector<std::vector<cv::Point>>{in_box(*within)}, cv::Scalar(255));
+    cv::fillPoly(inside, std::vector<std::vector<cv::Point>>{pixels_along(*within, box.tl())}, cv::Scalar(255));
     cv::bitwise_and(elsewhere, inside, elsewhere);
   }
   wipe_own_ink(elsewhere, checked, box.tl());

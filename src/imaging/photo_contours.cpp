@@ -13,9 +13,6 @@
 namespace incise {
 namespace {
 
-using imaging_detail::CheckedLine;
-using imaging_detail::InkMap;
-
 constexpr double kLargestBloodMm = 3.0;    // a longer red mark in the tumour is neither blood nor noise
 constexpr double kGreenerThanGrey = 0.08;  // strength of true green: rims of paper, cloth and char are grey
 constexpr double kRimOfCoverPx = 4.0;      // a line's blur hides a little more than its mask
@@ -78,86 +75,75 @@ PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale&
                                   const std::filesystem::path& name) {
   INCISE_REQUIRE(settings.max_gap_mm >= 0.0 && std::isfinite(settings.max_gap_mm),
                  fmt::format("expected max_gap_mm of 0 or more, found {}", settings.max_gap_mm));
-  imaging_detail::hold_opencv_threads();
+  using namespace imaging_detail;
+  hold_opencv_threads();
   PhotoContours result;
-  const imaging_detail::InkStrengths strengths = imaging_detail::ink_strengths(picture);
+  const InkStrengths strengths = ink_strengths(picture);
   // Scale at the middle of the picture; with perspective, lengths of gaps elsewhere are slightly wrong.
   result.mm_per_pixel = scale.mm_per_pixel({0.5 * picture.width, 0.5 * picture.height});
-  const InkMap green = imaging_detail::ink_map(strengths, InkColor::Green, result.mm_per_pixel);
-  const InkMap red = imaging_detail::ink_map(strengths, InkColor::Red, result.mm_per_pixel);
-  const cv::Mat green_mask = green.is_present ? imaging_detail::ink_mask(green) : cv::Mat();
-  const cv::Mat red_mask = red.is_present ? imaging_detail::ink_mask(red) : cv::Mat();
+  const InkMap green = ink_map(strengths, InkColor::Green, result.mm_per_pixel);
+  const InkMap red = ink_map(strengths, InkColor::Red, result.mm_per_pixel);
+  const cv::Mat green_mask = green.is_present ? ink_mask(green) : cv::Mat();
+  const cv::Mat red_mask = red.is_present ? ink_mask(red) : cv::Mat();
 
   LineSettings line{.edge = LineEdge::Middle, .mm_per_pixel = result.mm_per_pixel, .max_gap_mm = settings.max_gap_mm};
-  result.green = imaging_detail::trace_marked_line(green, green_mask, strengths.glare, widened(red_mask),
-                                                   InkColor::Green, line, name);
+  result.green = trace_marked_line(green, green_mask, strengths.glare, widened(red_mask), InkColor::Green, line, name);
   const CheckedLine edge{result.green,    line.edge, InkColor::Green, green_mask, line.mm_per_pixel,
                          line.max_gap_mm, name};
-  imaging_detail::require_in_view(edge);
+  require_in_view(edge);
   result.tumor_edge = in_plane(result.green, scale);
   require_size(result.tumor_edge, name);  // first, because a wrong scale also makes gaps wrong
-  imaging_detail::require_simple(edge);
-  imaging_detail::require_nothing_else(edge);
+  require_simple(edge);
+  require_nothing_else(edge);
   require_closed(result.green, name);
   require_no_crossing(result.tumor_edge, InkColor::Green, name);
-  imaging_detail::require_no_large_mark(edge, imaging_detail::marks_beside(edge, green_mask, nullptr), kSmallestTumorMm,
-                                        "beside the green ring");
-  const cv::Mat truly_green = imaging_detail::without_specks(green_mask & (strengths.green > kGreenerThanGrey), 24);
-  result.green_beside = imaging_detail::marks_beside(edge, truly_green, nullptr);
+  require_no_large_mark(edge, marks_beside(edge, green_mask, nullptr), kSmallestTumorMm, "beside the green ring");
+  const cv::Mat truly_green = without_specks(green_mask & (strengths.green > kGreenerThanGrey), 24);
+  result.green_beside = marks_beside(edge, truly_green, nullptr);
   result.mm_per_pixel = scale.mm_per_pixel(middle_of(result.green.points_px));
 
   line.mm_per_pixel = result.mm_per_pixel;
   line.edge = settings.red == RedLine::Kerf ? LineEdge::Inner : LineEdge::Middle;
-  result.red =
-      imaging_detail::trace_marked_line(red, red_mask, strengths.glare, widened(green_mask), InkColor::Red, line, name);
+  result.red = trace_marked_line(red, red_mask, strengths.glare, widened(green_mask), InkColor::Red, line, name);
   const CheckedLine cut{result.red, line.edge, InkColor::Red, red_mask, line.mm_per_pixel, line.max_gap_mm, name};
-  imaging_detail::require_in_view(cut);
-  imaging_detail::require_simple(cut);
-  imaging_detail::require_nothing_else(cut);
-  imaging_detail::require_no_large_mark(cut, imaging_detail::marks_beside(cut, red_mask, &result.green.points_px),
-                                        kLargestBloodMm, "inside the tumour's edge");
+  require_in_view(cut);
+  require_simple(cut);
+  require_nothing_else(cut);
+  require_no_large_mark(cut, marks_beside(cut, red_mask, &result.green.points_px), kLargestBloodMm,
+                        "inside the tumour's edge");
   result.incision = in_plane(result.red, scale);
   require_no_crossing(result.incision, InkColor::Red, name);
-  result.red_in_tumor = imaging_detail::marks_beside(cut, imaging_detail::faint_ink(red, result.green.points_px),
-                                                     &result.green.points_px);
+  result.red_in_tumor = marks_beside(cut, faint_ink(red, result.green.points_px), &result.green.points_px);
   cv::Mat covered = strengths.glare.clone();
   if (!green_mask.empty()) covered |= widened(green_mask);
-  result.odd_stretch = imaging_detail::odd_stretch_of(picture, red, result.red, covered, line);
-  return result;
-}
-
-ColorPicture draw_over(const ColorPicture& picture, const std::vector<OverlayLine>& lines) {
-  constexpr int kShift = 4;  // OpenCV draws at sixteenths of a pixel
-  ColorPicture result = picture;
-  for (std::uint8_t& value : result.rgb) value = static_cast<std::uint8_t>(value * 3 / 4);
-  cv::Mat pixels = imaging_detail::pixels_of(result);
-  const int thickness = std::max(1, std::min(picture.width, picture.height) / 900);
-  for (const OverlayLine& line : lines) {
-    std::vector<cv::Point> points;
-    for (const Vec2& p : line.points_px)
-      points.emplace_back(cvRound(p.x() * (1 << kShift)), cvRound(p.y() * (1 << kShift)));
-    cv::polylines(pixels, points, line.is_closed, cv::Scalar(line.rgb[0], line.rgb[1], line.rgb[2]), thickness,
-                  cv::LINE_AA, kShift);
-  }
+  result.odd_stretch = odd_stretch_of(picture, red, result.red, covered, line);
   return result;
 }
 
 ColorPicture draw_found(const ColorPicture& picture, const std::vector<const MarkedLine*>& lines,
                         const std::vector<Vec2>& ruler_marks_px) {
-  constexpr std::array<std::uint8_t, 3> kFirst{0, 230, 255}, kSecond{255, 255, 255}, kGap{255, 230, 0},
-      kMark{255, 0, 255};
-  std::vector<OverlayLine> drawn;
+  constexpr int kShift = 4;  // OpenCV draws at sixteenths of a pixel
+  const cv::Scalar first(0, 230, 255), others(255, 255, 255), gaps(255, 230, 0), marks(255, 0, 255);
+  ColorPicture result = picture;
+  for (std::uint8_t& value : result.rgb) value = static_cast<std::uint8_t>(value * 3 / 4);
+  cv::Mat pixels = imaging_detail::pixels_of(result);
+  const int thickness = std::max(1, std::min(picture.width, picture.height) / 900);
+  const auto draw = [&](const std::vector<Vec2>& line, bool is_closed, const cv::Scalar& color) {
+    std::vector<cv::Point> points;
+    for (const Vec2& p : line) points.emplace_back(cvRound(p.x() * (1 << kShift)), cvRound(p.y() * (1 << kShift)));
+    cv::polylines(pixels, points, is_closed, color, thickness, cv::LINE_AA, kShift);
+  };
   for (std::size_t i = 0; i < lines.size(); ++i)
-    drawn.push_back({lines[i]->points_px, lines[i]->is_closed, i == 0 ? kFirst : kSecond});
+    draw(lines[i]->points_px, lines[i]->is_closed, i == 0 ? first : others);
   for (const MarkedLine* line : lines) {
-    for (const LineGap& gap : line->gaps) drawn.push_back({{gap.from_px, gap.to_px}, false, kGap});
+    for (const LineGap& gap : line->gaps) draw({gap.from_px, gap.to_px}, false, gaps);
   }
   const double arm = 0.004 * std::max(picture.width, picture.height);
   for (const Vec2& p : ruler_marks_px) {
-    drawn.push_back({{p - Vec2(arm, 0), p + Vec2(arm, 0)}, false, kMark});
-    drawn.push_back({{p - Vec2(0, arm), p + Vec2(0, arm)}, false, kMark});
+    draw({p - Vec2(arm, 0), p + Vec2(arm, 0)}, false, marks);
+    draw({p - Vec2(0, arm), p + Vec2(0, arm)}, false, marks);
   }
-  return draw_over(picture, drawn);
+  return result;
 }
 
 }  // namespace incise

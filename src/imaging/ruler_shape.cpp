@@ -3,7 +3,6 @@
 #include <incise/core/units.hpp>
 
 #include <Eigen/Cholesky>
-#include <array>
 #include <cmath>
 #include <limits>
 

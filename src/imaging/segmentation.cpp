@@ -40,31 +40,25 @@ void require_sound_volume(const CtVolume& ct) {
 // Returns the voxels of a mask around which a ball stays inside the mask.
 Mask erode(const Mask& mask, double radius_mm, Workers& workers) {
   if (radius_mm == 0.0) return mask;
-  const GrayVolume depth = distance_to(complement(mask), workers);
-  Mask core{mask.grid, std::vector<std::uint8_t>(mask.voxels.size())};
-  for (std::size_t v = 0; v < core.voxels.size(); ++v) core.voxels[v] = depth.voxels[v] > radius_mm ? 1 : 0;
-  return core;
+  return mask_where(distance_to(complement(mask), workers), [&](float depth) { return depth > radius_mm; });
 }
 
 // Returns the balls around the voxels of an eroded set: the opened set, which by definition stays inside the original.
 Mask grow_back(Mask core, double radius_mm, Workers& workers) {
   if (radius_mm == 0.0) return core;
-  const GrayVolume distance = distance_to(core, workers);
-  for (std::size_t v = 0; v < core.voxels.size(); ++v) core.voxels[v] = distance.voxels[v] <= radius_mm ? 1 : 0;
-  return core;
+  return mask_where(distance_to(core, workers), [&](float distance) { return distance <= radius_mm; });
 }
 
 Mask piece_of(const Pieces& pieces, std::int32_t number) {
-  Mask piece{pieces.number.grid, std::vector<std::uint8_t>(pieces.number.voxels.size())};
-  std::transform(pieces.number.voxels.begin(), pieces.number.voxels.end(), piece.voxels.begin(),
-                 [number](std::int32_t n) { return static_cast<std::uint8_t>(n == number); });
-  return piece;
+  return mask_where(pieces.number, [number](std::int32_t n) { return n == number; });
 }
 
-std::int32_t largest(const Pieces& pieces) {
+/// Returns the number of the largest piece other than `except`; 0: there is none.
+std::int32_t largest(const Pieces& pieces, std::int32_t except = 0) {
   std::vector<std::size_t> sizes(static_cast<std::size_t>(pieces.count) + 1, 0);
   for (const std::int32_t number : pieces.number.voxels) ++sizes[static_cast<std::size_t>(number)];
-  return static_cast<std::int32_t>(std::max_element(sizes.begin() + 1, sizes.end()) - sizes.begin());
+  sizes[0] = sizes[static_cast<std::size_t>(except)] = 0;
+  return static_cast<std::int32_t>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
 }
 
 // Returns the number of the nearest piece within the opening's radius of the voxel; 0: none.
@@ -105,15 +99,6 @@ std::int32_t choose_piece(const Pieces& pieces, const std::vector<std::size_t>& 
   return chosen;
 }
 
-/// Returns the number of the largest piece other than `first`; 0 if there is no other.
-std::int32_t second_largest(const Pieces& pieces, std::int32_t first) {
-  std::vector<std::size_t> sizes(static_cast<std::size_t>(pieces.count) + 1, 0);
-  for (const std::int32_t number : pieces.number.voxels) ++sizes[static_cast<std::size_t>(number)];
-  sizes[0] = sizes[static_cast<std::size_t>(first)] = 0;
-  const auto second = std::max_element(sizes.begin(), sizes.end());
-  return *second == 0 ? 0 : static_cast<std::int32_t>(second - sizes.begin());
-}
-
 double volume_mm3(const Mask& mask) {
   return static_cast<double>(std::count(mask.voxels.begin(), mask.voxels.end(), 1)) * mask.grid.voxel_volume_mm3();
 }
@@ -130,7 +115,7 @@ Vec3 middle_of(const Mask& mask) {
 /// specimen.
 void note_rival(const Pieces& pieces, std::int32_t chosen, const Mask& body, const SegmentationSettings& settings,
                 Workers& workers, Segmentation& result) {
-  const std::int32_t second = second_largest(pieces, chosen);
+  const std::int32_t second = largest(pieces, chosen);
   if (second == 0) return;
   const Mask rival = grow_back(piece_of(pieces, second), settings.opening_radius_mm, workers);
   const double kept_mm3 = volume_mm3(body), rival_mm3 = volume_mm3(rival), share = rival_mm3 / kept_mm3;
@@ -185,13 +170,6 @@ GrayVolume smoothed(const GrayVolume& occupancy, double sigma_mm, Workers& worke
   return once;
 }
 
-Mask at_least_half(const GrayVolume& occupancy) {
-  Mask mask{occupancy.grid, std::vector<std::uint8_t>(occupancy.voxels.size())};
-  std::transform(occupancy.voxels.begin(), occupancy.voxels.end(), mask.voxels.begin(),
-                 [](float value) { return static_cast<std::uint8_t>(value >= 0.5F); });
-  return mask;
-}
-
 [[noreturn]] void refuse_smoothing(double smoothing_mm) {
   throw CaseError("segmentation", "smoothing_mm", fmt::format("{:g}, which leaves nothing of the body", smoothing_mm),
                   "a length shorter than the body is thick",
@@ -200,7 +178,7 @@ Mask at_least_half(const GrayVolume& occupancy) {
 
 // Reduces the occupancy to one piece above 0.5: removes crumbs beside the body and, if asked, closes cavities in it.
 Mask make_one_piece(GrayVolume& occupancy, bool close_holes, double smoothing_mm) {
-  const Mask all = at_least_half(occupancy);
+  const Mask all = mask_where(occupancy, [](float value) { return value >= 0.5F; });
   const Pieces pieces = find_pieces(all);
   if (pieces.count == 0) refuse_smoothing(smoothing_mm);
   Mask body = piece_of(pieces, largest(pieces));
@@ -258,6 +236,88 @@ void note_lost_volume(double sharp_mm3, Segmentation& result) {
       fmt::format("smoothing over {:g} mm changes the specimen's volume by {:.1f} %: this length is "
                   "too great for so small or thin a body. A shorter smoothing_mm (about a voxel) keeps the shape",
                   result.smoothing_mm, 100.0 * share));
+}
+
+enum class Source { Scan, Labels };
+
+/// @throws CaseError that lists every violation.
+void require_settings_in_range(const SegmentationSettings& settings) {
+  const std::vector<Problem> problems = validate(settings);
+  if (!problems.empty())
+    throw CaseError("segmentation", "settings",
+                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(sentences(problems), "; ")),
+                    "settings in their ranges");
+}
+
+Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Workers& workers,
+                      Monitor& monitor, const std::optional<Verdict>& of_scan = {}) {
+  require_settings_in_range(settings);
+  require_sound_volume(ct);
+  const auto report = [&](double fraction) {
+    throw_if_cancelled(monitor, kStage);
+    monitor.progress(kStage, fraction);
+  };
+
+  report(0.0);
+  // The pad has room for the final margin and for a slight growth of the body.
+  const int pad = settings.margin_voxels + kGrowth;
+  const WorkingVolume whole = cut_out(ct, settings, pad, source == Source::Scan ? kAirHu : std::int16_t{0}, monitor);
+  const std::vector<std::size_t> seeds = locate_seeds(ct, whole, settings);
+  report(0.1);
+  Segmentation result;
+  Mask body = find_body(whole, seeds, settings, workers, result);
+  report(0.4);
+  if (settings.fill_holes) fill_holes(body, result);
+  result.cut = find_cut_voxels(body, whole, ct.grid, settings.opening_radius_mm);
+  result.painted = find_painted_voxels(body, whole, settings.opening_radius_mm);
+  note_cut_faces(body.grid, result);
+  if (source == Source::Scan) result.verdict.add(of_scan ? *of_scan : check_scan(ct));
+
+  const IndexBox around = grown(box_of(body), pad);
+  const CtVolume hu = crop(whole.hu, around);
+  report(0.5);
+  const GrayVolume sharp = occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings, workers);
+  result.smoothing_mm = smoothing_length_mm(settings, ct.grid.spacing_mm);
+  GrayVolume occupancy = smoothed(sharp, result.smoothing_mm, workers);
+  report(0.9);
+  const Mask label = make_one_piece(occupancy, settings.fill_holes, result.smoothing_mm);
+  if (source == Source::Scan) result.tissue_hu = median_hu(hu, label, settings, result.smoothing_mm);
+
+  const IndexBox kept = grown(box_of(label), settings.margin_voxels);
+  result.labels = crop(label, kept);
+  result.occupancy = crop(occupancy, kept);
+  for (std::vector<MadeVoxel>* made : {&result.cut, &result.painted})
+    *made = carried_to_surface(*made, body.grid, result.labels, kCarriedLengths * result.smoothing_mm);
+  result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
+  result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
+  result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5, workers);
+  note_lost_volume(iso_volume_mm3(sharp, 0.5, workers), result);
+  report(1.0);
+  return result;
+}
+
+/// Returns 1 where the label is tissue, 0 elsewhere.
+LabelVolume tissue_of(const LabelVolume& labels, const SegmentationSettings& settings) {
+  const std::array<bool, 256> is_tissue = tissue_labels(settings);
+  return mask_where(labels, [&](std::uint8_t label) { return is_tissue[label]; });
+}
+
+/// @throws CaseError if the region contains no label, or a seed lies where the label is 0.
+void require_labels(const LabelVolume& labels, const SegmentationSettings& settings) {
+  const VolumeGrid& grid = labels.grid;
+  bool is_labelled = false;
+  for (std::size_t v = 0; v < labels.voxels.size() && !is_labelled; ++v) {
+    if (labels.voxels[v] == 0) continue;
+    const auto [i, j, k] = grid.voxel_at(v);
+    is_labelled = is_in_roi(settings.roi_box_mm, grid.world_from_index(Vec3(i, j, k)));
+  }
+  if (!is_labelled) throw CaseError("segmentation", "labels", "0 in every voxel of the region", "labelled tissue");
+  for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s) {
+    const Eigen::Array3i at = grid.index_from_world(settings.seeds_mm[s]).array().round().cast<int>();
+    if (!grid.contains(at[0], at[1], at[2]) || labels.at(at[0], at[1], at[2]) != 0) continue;
+    throw CaseError("segmentation", fmt::format("seed_mm[{}]", s), "a point where the label is 0",
+                    "a point inside the labelled tissue");
+  }
 }
 
 }  // namespace
@@ -324,95 +384,6 @@ double smoothing_length_mm(const SegmentationSettings& settings, const Vec3& spa
 int Segmentation::cut_faces() const {
   return static_cast<int>(std::count_if(cut_voxels.begin(), cut_voxels.end(), [](std::size_t n) { return n > 0; }));
 }
-
-namespace {
-
-enum class Source { Scan, Labels };
-
-/// @throws CaseError that lists every violation.
-void require_settings_in_range(const SegmentationSettings& settings) {
-  const std::vector<Problem> problems = validate(settings);
-  if (!problems.empty())
-    throw CaseError("segmentation", "settings",
-                    fmt::format("{} violation(s): {}", problems.size(), fmt::join(sentences(problems), "; ")),
-                    "settings in their ranges");
-}
-
-Segmentation found_in(const CtVolume& ct, Source source, const SegmentationSettings& settings, Workers& workers,
-                      Monitor& monitor, const std::optional<Verdict>& of_scan = {}) {
-  require_settings_in_range(settings);
-  require_sound_volume(ct);
-  const auto report = [&](double fraction) {
-    throw_if_cancelled(monitor, kStage);
-    monitor.progress(kStage, fraction);
-  };
-
-  report(0.0);
-  // The pad has room for the final margin and for a slight growth of the body.
-  const int pad = settings.margin_voxels + kGrowth;
-  const WorkingVolume whole = cut_out(ct, settings, pad, source == Source::Scan ? kAirHu : std::int16_t{0}, monitor);
-  const std::vector<std::size_t> seeds = locate_seeds(ct, whole, settings);
-  report(0.1);
-  Segmentation result;
-  Mask body = find_body(whole, seeds, settings, workers, result);
-  report(0.4);
-  if (settings.fill_holes) fill_holes(body, result);
-  result.cut = find_cut_voxels(body, whole, ct.grid, settings.opening_radius_mm);
-  result.painted = find_painted_voxels(body, whole, settings.opening_radius_mm);
-  note_cut_faces(body.grid, result);
-  if (source == Source::Scan) result.verdict.add(of_scan ? *of_scan : check_scan(ct));
-
-  const IndexBox around = grown(box_of(body), pad);
-  const CtVolume hu = crop(whole.hu, around);
-  report(0.5);
-  const GrayVolume sharp = occupancy_from_gray(hu, crop(whole.region, around), crop(body, around), settings, workers);
-  result.smoothing_mm = smoothing_length_mm(settings, ct.grid.spacing_mm);
-  GrayVolume occupancy = smoothed(sharp, result.smoothing_mm, workers);
-  report(0.9);
-  const Mask label = make_one_piece(occupancy, settings.fill_holes, result.smoothing_mm);
-  if (source == Source::Scan) result.tissue_hu = median_hu(hu, label, settings, result.smoothing_mm);
-
-  const IndexBox kept = grown(box_of(label), settings.margin_voxels);
-  result.labels = crop(label, kept);
-  result.occupancy = crop(occupancy, kept);
-  for (std::vector<MadeVoxel>* made : {&result.cut, &result.painted})
-    *made = carried_to_surface(*made, body.grid, result.labels, kCarriedLengths * result.smoothing_mm);
-  result.voxels = static_cast<std::size_t>(std::count(result.labels.voxels.begin(), result.labels.voxels.end(), 1));
-  result.volume_mm3 = static_cast<double>(result.voxels) * result.labels.grid.voxel_volume_mm3();
-  result.occupancy_volume_mm3 = iso_volume_mm3(result.occupancy, 0.5, workers);
-  note_lost_volume(iso_volume_mm3(sharp, 0.5, workers), result);
-  report(1.0);
-  return result;
-}
-
-/// Returns 1 where the label is tissue, 0 elsewhere.
-LabelVolume tissue_of(const LabelVolume& labels, const SegmentationSettings& settings) {
-  const std::array<bool, 256> is_tissue = tissue_labels(settings);
-  LabelVolume tissue{labels.grid, std::vector<std::uint8_t>(labels.voxels.size())};
-  std::ranges::transform(labels.voxels, tissue.voxels.begin(),
-                         [&](std::uint8_t label) { return static_cast<std::uint8_t>(is_tissue[label]); });
-  return tissue;
-}
-
-/// @throws CaseError if the region contains no label, or a seed lies where the label is 0.
-void require_labels(const LabelVolume& labels, const SegmentationSettings& settings) {
-  const VolumeGrid& grid = labels.grid;
-  bool is_labelled = false;
-  for (std::size_t v = 0; v < labels.voxels.size() && !is_labelled; ++v) {
-    if (labels.voxels[v] == 0) continue;
-    const auto [i, j, k] = grid.voxel_at(v);
-    is_labelled = is_in_roi(settings.roi_box_mm, grid.world_from_index(Vec3(i, j, k)));
-  }
-  if (!is_labelled) throw CaseError("segmentation", "labels", "0 in every voxel of the region", "labelled tissue");
-  for (std::size_t s = 0; s < settings.seeds_mm.size(); ++s) {
-    const Eigen::Array3i at = grid.index_from_world(settings.seeds_mm[s]).array().round().cast<int>();
-    if (!grid.contains(at[0], at[1], at[2]) || labels.at(at[0], at[1], at[2]) != 0) continue;
-    throw CaseError("segmentation", fmt::format("seed_mm[{}]", s), "a point where the label is 0",
-                    "a point inside the labelled tissue");
-  }
-}
-
-}  // namespace
 
 std::array<bool, 256> tissue_labels(const SegmentationSettings& settings) {
   std::array<bool, 256> is_tissue{};

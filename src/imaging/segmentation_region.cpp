@@ -131,6 +131,68 @@ void require_tissue(const WorkingVolume& work, const SegmentationSettings& setti
                   "tissue in the window", fmt::format("The region holds {} to {} HU", least, greatest));
 }
 
+using Place = std::array<int, 3>;
+
+Place step_towards(std::int32_t side) {
+  Place step{};
+  step.at(static_cast<std::size_t>(side / 2)) = side % 2 == 0 ? -1 : 1;
+  return step;
+}
+
+Place moved(const Place& from, const Place& step, int times = 1) {
+  return {from[0] + times * step[0], from[1] + times * step[1], from[2] + times * step[2]};
+}
+
+bool is_in(const Mask& mask, const Place& at) {
+  return mask.grid.contains(at[0], at[1], at[2]) && mask.at(at[0], at[1], at[2]) != 0;
+}
+
+int voxels_within(double length_mm, const VolumeGrid& grid, std::int32_t side) {
+  return static_cast<int>(std::ceil(length_mm / grid.spacing_mm[side / 2]));
+}
+
+/// Returns whether tissue continues in the 3 x 3 voxels round `beyond`, across the axis of `side`.
+bool goes_on(const WorkingVolume& work, const VolumeGrid& scan, const Place& first, const Place& beyond,
+             std::int32_t side) {
+  constexpr int kLeast = 4;  // of 9: noise gives fewer, the rim of a cut more
+  const auto one = static_cast<std::size_t>((side / 2 + 1) % 3), other = static_cast<std::size_t>((side / 2 + 2) % 3);
+  int count = 0;
+  for (int a = -1; a <= 1; ++a)
+    for (int b = -1; b <= 1; ++b) {
+      Place at = beyond;
+      at[one] += a;
+      at[other] += b;
+      const bool is_outside = !scan.contains(at[0] + first[0], at[1] + first[1], at[2] + first[2]);
+      if (is_outside || (!is_in(work.region, at) && is_in(work.tissue, at))) ++count;
+    }
+  return count >= kLeast;
+}
+
+/// Returns the body's voxels that lie straight inwards from an artificial side, with only tissue between.
+/// @param is_made  (voxel, the voxel beyond its side, side) -> whether this side is artificial
+template <class IsMade>
+std::vector<MadeVoxel> find_made(const Mask& body, const WorkingVolume& work, double opening_mm,
+                                 const IsMade& is_made) {
+  const VolumeGrid& grid = body.grid;
+  std::vector<MadeVoxel> made;
+  for (std::size_t v = 0; v < body.voxels.size(); ++v) {
+    if (body.voxels[v] == 0 && work.in_window.voxels[v] == 0) continue;
+    const Place at = grid.voxel_at(v);
+    for (std::int32_t side = 0; side < 6; ++side) {
+      const Place step = step_towards(side);
+      if (!is_made(at, moved(at, step), side)) continue;
+      Place inwards = at;
+      for (int left = voxels_within(opening_mm, grid, side); left > 0 && !is_in(body, inwards); --left) {
+        if (!is_in(work.in_window, inwards)) break;
+        inwards = moved(inwards, step, -1);
+      }
+      if (is_in(body, inwards))
+        made.push_back({static_cast<std::int32_t>(grid.offset(inwards[0], inwards[1], inwards[2])), side});
+    }
+  }
+  return made;
+}
+
 }  // namespace
 
 bool is_in_roi(const std::optional<Box3>& roi_mm, const Vec3& p) {
@@ -198,72 +260,6 @@ std::vector<std::size_t> locate_seeds(const CtVolume& ct, const WorkingVolume& w
   }
   return offsets;
 }
-
-namespace {
-
-using Place = std::array<int, 3>;
-
-Place step_towards(std::int32_t side) {
-  Place step{};
-  step.at(static_cast<std::size_t>(side / 2)) = side % 2 == 0 ? -1 : 1;
-  return step;
-}
-
-Place moved(const Place& from, const Place& step, int times = 1) {
-  return {from[0] + times * step[0], from[1] + times * step[1], from[2] + times * step[2]};
-}
-
-bool is_in(const Mask& mask, const Place& at) {
-  return mask.grid.contains(at[0], at[1], at[2]) && mask.at(at[0], at[1], at[2]) != 0;
-}
-
-int voxels_within(double length_mm, const VolumeGrid& grid, std::int32_t side) {
-  return static_cast<int>(std::ceil(length_mm / grid.spacing_mm[side / 2]));
-}
-
-/// Returns whether tissue continues in the 3 x 3 voxels round `beyond`, across the axis of `side`.
-bool goes_on(const WorkingVolume& work, const VolumeGrid& scan, const Place& first, const Place& beyond,
-             std::int32_t side) {
-  constexpr int kLeast = 4;  // of 9: noise gives fewer, the rim of a cut more
-  const auto one = static_cast<std::size_t>((side / 2 + 1) % 3), other = static_cast<std::size_t>((side / 2 + 2) % 3);
-  int count = 0;
-  for (int a = -1; a <= 1; ++a)
-    for (int b = -1; b <= 1; ++b) {
-      Place at = beyond;
-      at[one] += a;
-      at[other] += b;
-      const bool is_outside = !scan.contains(at[0] + first[0], at[1] + first[1], at[2] + first[2]);
-      if (is_outside || (!is_in(work.region, at) && is_in(work.tissue, at))) ++count;
-    }
-  return count >= kLeast;
-}
-
-/// Returns the body's voxels that lie straight inwards from an artificial side, with only tissue between.
-/// @param is_made  (voxel, the voxel beyond its side, side) -> whether this side is artificial
-template <class IsMade>
-std::vector<MadeVoxel> find_made(const Mask& body, const WorkingVolume& work, double opening_mm,
-                                 const IsMade& is_made) {
-  const VolumeGrid& grid = body.grid;
-  std::vector<MadeVoxel> made;
-  for (std::size_t v = 0; v < body.voxels.size(); ++v) {
-    if (body.voxels[v] == 0 && work.in_window.voxels[v] == 0) continue;
-    const Place at = grid.voxel_at(v);
-    for (std::int32_t side = 0; side < 6; ++side) {
-      const Place step = step_towards(side);
-      if (!is_made(at, moved(at, step), side)) continue;
-      Place inwards = at;
-      for (int left = voxels_within(opening_mm, grid, side); left > 0 && !is_in(body, inwards); --left) {
-        if (!is_in(work.in_window, inwards)) break;
-        inwards = moved(inwards, step, -1);
-      }
-      if (is_in(body, inwards))
-        made.push_back({static_cast<std::int32_t>(grid.offset(inwards[0], inwards[1], inwards[2])), side});
-    }
-  }
-  return made;
-}
-
-}  // namespace
 
 std::vector<MadeVoxel> find_cut_voxels(const Mask& body, const WorkingVolume& work, const VolumeGrid& scan,
                                        double opening_mm) {

@@ -183,10 +183,7 @@ GrayVolume gaussian(GrayVolume volume, double sigma, Workers& workers) {
 }
 
 Mask complement(const Mask& mask) {
-  Mask other{mask.grid, std::vector<std::uint8_t>(mask.voxels.size())};
-  std::transform(mask.voxels.begin(), mask.voxels.end(), other.voxels.begin(),
-                 [](std::uint8_t value) { return static_cast<std::uint8_t>(value == 0); });
-  return other;
+  return mask_where(mask, [](std::uint8_t value) { return value == 0; });
 }
 
 }  // namespace incise

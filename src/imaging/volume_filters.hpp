@@ -3,12 +3,22 @@
 #include <incise/core/workers.hpp>
 #include <incise/geometry/volume.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace incise {
 
 /// 1 = in the set, 0 = not.
 using Mask = Volume<std::uint8_t>;
+
+/// Returns the voxels for whose value the condition holds.
+template <class Value, class Condition>
+[[nodiscard]] Mask mask_where(const Volume<Value>& volume, const Condition& holds) {
+  Mask mask{volume.grid, std::vector<std::uint8_t>(volume.voxels.size())};
+  std::ranges::transform(volume.voxels, mask.voxels.begin(),
+                         [&](Value value) { return static_cast<std::uint8_t>(holds(value)); });
+  return mask;
+}
 
 /// The face-connected pieces of a mask.
 struct Pieces {

@@ -9,7 +9,6 @@
 #include <incise/imaging/tongue_shape.hpp>
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace incise {

@@ -68,17 +68,8 @@ struct PhotoContours {
 [[nodiscard]] PhotoContours find_photo_contours(const ColorPicture& picture, const PhotoScale& scale,
                                                 const PhotoSettings& settings, const std::filesystem::path& name);
 
-/// A line to draw over a picture.
-struct OverlayLine {
-  std::vector<Vec2> points_px;
-  bool is_closed = false;
-  std::array<std::uint8_t, 3> rgb{255, 255, 255};
-};
-/// Returns the picture, slightly darkened, with anti-aliased lines drawn over it.
-[[nodiscard]] ColorPicture draw_over(const ColorPicture& picture, const std::vector<OverlayLine>& lines);
-
-/// Returns the photograph with the found lines drawn over it: the first line (tumour edge) cyan, the others (incision)
-/// white, gaps yellow, ruler marks magenta.
+/// Returns the photograph, slightly darkened, with the found lines drawn over it: the first line (tumour edge) cyan,
+/// the others (incision) white, gaps yellow, ruler marks magenta.
 [[nodiscard]] ColorPicture draw_found(const ColorPicture& picture, const std::vector<const MarkedLine*>& lines,
                                       const std::vector<Vec2>& ruler_marks_px = {});
 

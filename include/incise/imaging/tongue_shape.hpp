@@ -1,14 +1,11 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
-#include <incise/core/problem.hpp>
 #include <incise/core/random.hpp>
 #include <incise/geometry/types.hpp>
 
 #include <array>
 #include <optional>
-#include <string>
-#include <vector>
 
 namespace incise {
 
