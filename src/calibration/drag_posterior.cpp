@@ -123,6 +123,11 @@ void add_specimen(BiasEquation& sum, const WaveSums& waves, double rest_0, doubl
   sum.pull += ur - share * ug * rg;
 }
 
+std::array<double*, 6> sums_of(ResidualEstimate& residual) {
+  return {&residual.sd_mm,        &residual.correlation_deg, &residual.reading_mm, &residual.specimen_spread_mm,
+          &residual.placement_mm, &residual.n_effective};
+}
+
 /// Collects the grid, one choice of the residual's parameters after the other. Masses are relative to the greatest so
 /// far, which keeps their exponentials in range.
 class GridSum {
@@ -162,11 +167,7 @@ class GridSum {
       cell.bias_variance_mm2 = cell.bias_variance_mm2 / cell.mass - cell.bias_mean_mm * cell.bias_mean_mm;
       cell.mass /= total_;
     }
-    ResidualEstimate& residual = posterior_.residual;
-    for (double* sum : {&residual.sd_mm, &residual.correlation_deg, &residual.reading_mm, &residual.specimen_spread_mm,
-                        &residual.placement_mm, &residual.n_effective}) {
-      *sum /= total_;
-    }
+    for (double* sum : sums_of(posterior_.residual)) *sum /= total_;
   }
 
  private:
@@ -199,11 +200,8 @@ class GridSum {
       for (PosteriorCell& cell : posterior_.cells) {
         for (double* sum : {&cell.mass, &cell.bias_mean_mm, &cell.bias_variance_mm2}) *sum *= factor;
       }
-      ResidualEstimate& residual = posterior_.residual;
-      for (double* sum : {&residual.sd_mm, &residual.correlation_deg, &residual.reading_mm,
-                          &residual.specimen_spread_mm, &residual.placement_mm, &residual.n_effective, &total_}) {
-        *sum *= factor;
-      }
+      for (double* sum : sums_of(posterior_.residual)) *sum *= factor;
+      total_ *= factor;
     }
     return std::exp(log_mass - reference_);
   }

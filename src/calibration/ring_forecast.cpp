@@ -83,10 +83,7 @@ double log_prior(const RingSpreads& spreads) {
 }
 
 SlowWaves slow_waves(const std::vector<double>& profile) {
-  const std::vector<double> spectrum = ring_spectrum(profile);
-  SlowWaves waves;
-  for (Eigen::Index i = 0; i < kWaves; ++i) waves[i] = spectrum[static_cast<std::size_t>(i)];
-  return waves;
+  return Eigen::Map<const SlowWaves>(ring_spectrum(profile).data());
 }
 
 std::vector<double> profile_of(const SlowWaves& waves, std::size_t sectors) {
@@ -96,10 +93,7 @@ std::vector<double> profile_of(const SlowWaves& waves, std::size_t sectors) {
 }
 
 SlowWaves slow_eigenvalues(std::size_t sectors, double length_deg) {
-  const std::vector<double> values = ring_eigenvalues(sectors, length_deg, kEntriesThatCount);
-  SlowWaves slow;
-  for (Eigen::Index i = 0; i < kWaves; ++i) slow[i] = values[static_cast<std::size_t>(i)];
-  return slow;
+  return Eigen::Map<const SlowWaves>(ring_eigenvalues(sectors, length_deg, kEntriesThatCount).data());
 }
 
 /// Returns the matrix that maps the waves of f(θ) to those of f(θ − angle).
@@ -192,14 +186,10 @@ double log_posterior(const std::vector<RingPlace>& places, const Eigen::VectorXd
   return log_prior(spreads) - 0.5 * misfit - log_determinant;
 }
 
-struct FoundSpreads {
-  RingSpreads spreads;
-  bool is_converged = false;  ///< not even a factor as small as the last one improves any spread
-};
-
-/// Pattern search: each spread in turn is multiplied or divided by a factor, which shrinks when nothing improves.
-FoundSpreads most_probable(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, RingSpreads spreads,
-                           std::size_t sectors) {
+/// Finds the most probable spreads by a pattern search: each in turn is multiplied or divided by a factor, which
+/// shrinks when nothing improves. Returns whether not even a factor as small as the last one improves any spread.
+bool find_spreads(const std::vector<RingPlace>& places, const Eigen::VectorXd& rest, RingSpreads& spreads,
+                  std::size_t sectors) {
   constexpr double kFirstFactor = 2.0, kLastFactor = 1.1;
   constexpr int kMostRounds = 60;
   double best = log_posterior(places, rest, spreads, sectors), factor = kFirstFactor;
@@ -219,7 +209,7 @@ FoundSpreads most_probable(const std::vector<RingPlace>& places, const Eigen::Ve
     }
     if (!is_better) factor = std::sqrt(factor);
   }
-  return {spreads, factor <= kLastFactor};
+  return factor <= kLastFactor;
 }
 
 }  // namespace
@@ -257,7 +247,7 @@ std::vector<double> photographed_in_view(std::span<const RingObservation> observ
 struct RingForecaster::Posterior {
   std::vector<RingObservation> observations;
   bool has_simulation = false;
-  std::size_t sectors = 0;
+  std::size_t sectors = 36;  ///< of lists: that of the observations, if there are any
   RingSpreads spreads;
   bool is_converged = true;
   CovariateValues mean{};
@@ -281,47 +271,35 @@ struct RingForecaster::Posterior {
       share += places[s].simulated.dot(weights.segment<kWaves>(static_cast<Eigen::Index>(s) * kWaves));
     return share * spreads.share * spreads.share;
   }
-  /// Returns the covariances of a ring with all observations. @pre at least one.
-  [[nodiscard]] Eigen::MatrixXd cross_to(const RingPlace& place, const CommonCovariance& common) const {
-    Eigen::MatrixXd cross(kWaves, weights.size());
-    for (std::size_t s = 0; s < places.size(); ++s)
-      cross.middleCols<kWaves>(static_cast<Eigen::Index>(s) * kWaves) = common.between(place, places[s]);
-    return cross;
-  }
   /// Slow waves expected of one more photograph minus its simulation, and their covariance.
   struct Expected {
     SlowWaves mean = SlowWaves::Zero();
     WaveMatrix covariance = WaveMatrix::Zero();
   };
-  [[nodiscard]] Expected expect(const RingPlace& place, std::size_t count) const {
-    const CommonCovariance common(spreads, count);
+  [[nodiscard]] Expected expect(const RingPlace& place) const {
+    const CommonCovariance common(spreads, sectors);
     Expected expected;
     expected.covariance = common.between(place, place);
-    expected.covariance.diagonal() += own_variances(spreads, count);
+    expected.covariance.diagonal() += own_variances(spreads, sectors);
     if (places.empty()) return expected;
-    const Eigen::MatrixXd cross = cross_to(place, common);
+    Eigen::MatrixXd cross(kWaves, weights.size());  // covariances with all observations
+    for (std::size_t s = 0; s < places.size(); ++s)
+      cross.middleCols<kWaves>(static_cast<Eigen::Index>(s) * kWaves) = common.between(place, places[s]);
     expected.mean = cross * weights;
     expected.covariance -= cross * factor.solve(cross.transpose());
     return expected;
   }
   /// Returns the covariance between sectors of the slow waves and of the fast ones, which are not forecast.
-  [[nodiscard]] Eigen::MatrixXd between_sectors(const WaveMatrix& covariance, std::size_t count) const {
-    const auto rows = static_cast<Eigen::Index>(count);
+  [[nodiscard]] Eigen::MatrixXd between_sectors(const WaveMatrix& covariance) const {
+    const auto rows = static_cast<Eigen::Index>(sectors);
     Eigen::MatrixXd basis(rows, kWaves);
     for (Eigen::Index k = 0; k < kWaves; ++k) {
-      const std::vector<double> wave = profile_of(SlowWaves::Unit(k), count);
+      const std::vector<double> wave = profile_of(SlowWaves::Unit(k), sectors);
       basis.col(k) = Eigen::Map<const Eigen::VectorXd>(wave.data(), rows);
     }
     Eigen::MatrixXd sectors_covariance = basis * covariance * basis.transpose();
     sectors_covariance.diagonal().array() += fast_mm * fast_mm;
     return sectors_covariance;
-  }
-  /// Returns the number of sectors of lists: that of the observations, if there are any.
-  [[nodiscard]] std::size_t sectors_of_lists(std::size_t asked) const {
-    if (!places.empty()) return sectors;
-    INCISE_REQUIRE(asked >= kEntriesThatCount,
-                   fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, asked));
-    return asked;
   }
   /// Returns the names of the covariates outside the observations' range; empty without observations.
   [[nodiscard]] std::vector<std::string_view> unlike(const RingCovariates& ring) const {
@@ -337,16 +315,14 @@ struct RingForecaster::Posterior {
 RingForecaster::RingForecaster(std::vector<RingObservation> observations, bool has_simulation) {
   auto made = std::make_unique<Posterior>();
   Posterior& p = *made;
+  posterior_ = std::move(made);
   p.has_simulation = has_simulation;
   p.spreads.slope_mm.fill(0.1);
   if (!has_simulation) {
     p.spreads.share = 0.0;
     p.spreads.common_mm = kCommonAloneMm;
   }
-  if (observations.empty()) {
-    posterior_ = std::move(made);
-    return;
-  }
+  if (observations.empty()) return;
   p.sectors = observations.front().photographed_mm.size();
   INCISE_REQUIRE(p.sectors >= kEntriesThatCount,
                  fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, p.sectors));
@@ -376,13 +352,10 @@ RingForecaster::RingForecaster(std::vector<RingObservation> observations, bool h
     rest.segment<kWaves>(static_cast<Eigen::Index>(s) * kWaves) =
         slow_waves(observations[s].photographed_mm) - simulated;
   }
-  const FoundSpreads found = most_probable(p.places, rest, p.spreads, p.sectors);
-  p.spreads = found.spreads;
-  p.is_converged = found.is_converged;
+  p.is_converged = find_spreads(p.places, rest, p.spreads, p.sectors);
   p.factor.compute(covariance_of(p.places, p.spreads, p.sectors));
   p.weights = p.factor.solve(rest);
   p.observations = std::move(observations);
-  posterior_ = std::move(made);
 }
 
 RingForecaster::~RingForecaster() = default;
@@ -396,12 +369,12 @@ bool RingForecaster::is_converged() const {
   return posterior_->is_converged;
 }
 
-RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t sectors) const {
+RingForecast RingForecaster::forecast(const RingCovariates& ring) const {
   const Posterior& p = *posterior_;
   RingForecast forecast{.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0, .share_sd = p.spreads.share};
-  const std::size_t count = p.sectors_of_lists(sectors);
+  const std::size_t count = p.sectors;
   // The ring is taken as an average simulated one: the share covers its difference.
-  const Posterior::Expected expected = p.expect(p.place_of(ring), count);
+  const Posterior::Expected expected = p.expect(p.place_of(ring));
   if (!p.places.empty()) {
     const double prior = p.spreads.share * p.spreads.share;
     Eigen::VectorXd differences(p.weights.size());
@@ -412,15 +385,15 @@ RingForecast RingForecaster::forecast(const RingCovariates& ring, std::size_t se
   forecast.unlike = p.unlike(ring);
   forecast.residual_mm = profile_of(expected.mean - p.share() * p.simulated_mean, count);
   forecast.level_sd_mm = std::sqrt(std::max(0.0, expected.covariance(0, 0)) / static_cast<double>(count));
-  const Eigen::MatrixXd covariance = p.between_sectors(expected.covariance, count);
+  const Eigen::MatrixXd covariance = p.between_sectors(expected.covariance);
   for (const double variance : covariance.diagonal()) forecast.sd_mm.push_back(std::sqrt(std::max(0.0, variance)));
   return forecast;
 }
 
 RingPrediction RingForecaster::predict(const RingCovariates& ring, const std::vector<double>& simulated_mm,
-                                       double ln_modulus_sd, std::size_t sectors) const {
+                                       double ln_modulus_sd) const {
   const Posterior& p = *posterior_;
-  const std::size_t count = p.sectors_of_lists(sectors);
+  const std::size_t count = p.sectors;
   INCISE_REQUIRE(simulated_mm.empty() || simulated_mm.size() >= kEntriesThatCount,
                  fmt::format("expected at least {} sectors, found {}", kEntriesThatCount, simulated_mm.size()));
   for (const double value : simulated_mm) INCISE_REQUIRE(std::isfinite(value), "expected finite errors");
@@ -431,12 +404,12 @@ RingPrediction RingForecaster::predict(const RingCovariates& ring, const std::ve
     const double scale = std::sqrt(static_cast<double>(count) / static_cast<double>(simulated_mm.size()));
     place.simulated = scale * slow_waves(simulated_mm) - p.simulated_mean;
   }
-  Posterior::Expected expected = p.expect(place, count);
+  Posterior::Expected expected = p.expect(place);
   expected.covariance(0, 0) +=
       static_cast<double>(count) * std::pow(p.spreads.slope_mm[kModulus] * ln_modulus_sd / kSteps[kModulus], 2);
   return {.simulated_share = p.has_simulation ? 1.0 + p.share() : 0.0,
           .residual_mm = profile_of(expected.mean, count),
-          .covariance_mm2 = p.between_sectors(expected.covariance, count),
+          .covariance_mm2 = p.between_sectors(expected.covariance),
           .degrees = p.places.size() + kPriorDegrees,
           .unlike = p.unlike(ring)};
 }

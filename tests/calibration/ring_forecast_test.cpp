@@ -209,10 +209,7 @@ TEST(RingForecaster, RefusesWhatIsNoProfile) {
   EXPECT_NO_THROW(RingForecaster(observations, false));
   observations[0].photographed_mm[3] = std::nan("");
   EXPECT_THROW(RingForecaster(observations, false), InvalidArgument);
-  const RingForecaster simulation({}, true);
-  EXPECT_THROW(static_cast<void>(simulation.forecast({}, 8)), InvalidArgument);
-  EXPECT_THROW(static_cast<void>(simulation.predict({}, {}, 0.0, 8)), InvalidArgument);
-  EXPECT_EQ(simulation.forecast({}, 9).residual_mm.size(), 9U);
+  EXPECT_EQ(RingForecaster({}, true).forecast({}).residual_mm.size(), 36U);
 }
 
 TEST(PhotographedInView, TurnsEachCutByItsStart) {

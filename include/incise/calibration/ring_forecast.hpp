@@ -106,18 +106,15 @@ class RingForecaster {
   ~RingForecaster();
   RingForecaster(RingForecaster&&) noexcept;
 
-  /// Forecasts a ring that has not been simulated.
-  /// @param sectors  of the forecast's lists, at least 9 (InvalidArgument); not read if there are observations, whose
-  /// number is used.
-  [[nodiscard]] RingForecast forecast(const RingCovariates& ring, std::size_t sectors = 36) const;
+  /// Forecasts a ring that has not been simulated, by as many sectors as the observations have; 36 without any.
+  [[nodiscard]] RingForecast forecast(const RingCovariates& ring) const;
   /// Predicts how the photograph of this ring will differ from a simulated cut along the planned path.
   /// @param simulated_mm   signed errors of that cut by sector, 9 or more, the calibration's bias added; empty:
   /// unknown, and assumed to be the observations' mean.
   /// @param ln_modulus_sd  standard deviation of ln(Young's modulus) of the ring if no pull was measured; otherwise 0.
-  /// @param sectors        as in forecast.
   /// @throws InvalidArgument for fewer than 9 simulated errors, errors that are not finite, or ln_modulus_sd below 0.
   [[nodiscard]] RingPrediction predict(const RingCovariates& ring, const std::vector<double>& simulated_mm,
-                                       double ln_modulus_sd = 0.0, std::size_t sectors = 36) const;
+                                       double ln_modulus_sd = 0.0) const;
   [[nodiscard]] HandEyeEstimate hand_eye() const;
   [[nodiscard]] const RingSpreads& spreads() const;
   /// Whether the search for the spreads converged within its limit of 60 rounds.
