@@ -118,20 +118,19 @@ RocCurve roc_curve(std::span<const Forecast> forecasts, const BootstrapSettings&
   INCISE_REQUIRE(settings.replicates >= 99 && settings.level > 0.0 && settings.level < 1.0,
                  fmt::format("expected at least 99 replicates and a level between 0 and 1, found {} and {}",
                              settings.replicates, settings.level));
-  std::vector<double> happened, did_not;
+  Scores scores;
   for (std::size_t i = 0; i < forecasts.size(); ++i) {
     INCISE_REQUIRE(std::isfinite(forecasts[i].said), fmt::format("forecast {}: expected a finite score", i));
-    (forecasts[i].happened ? happened : did_not).push_back(forecasts[i].said);
+    scores.add(forecasts[i]);
   }
+  const auto& [happened, did_not] = scores;
   INCISE_REQUIRE(!happened.empty() && !did_not.empty(),
                  fmt::format("expected forecasts of what happened and of what did not, found {} and {}",
                              happened.size(), did_not.size()));
-  std::sort(happened.begin(), happened.end());
-  std::sort(did_not.begin(), did_not.end());
   RocCurve curve;
   curve.happened = happened.size();
   curve.did_not = did_not.size();
-  curve.area = area_of(happened, did_not);
+  curve.area = scores.area();  // sorts them
   curve.points = points_of(happened, did_not);
   const std::vector<std::vector<Forecast>> clusters = by_cluster(forecasts);
   std::vector<double> areas;

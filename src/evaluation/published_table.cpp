@@ -1,6 +1,5 @@
 #include "evaluation/audit_rules.hpp"
 
-#include <incise/core/error.hpp>
 #include <incise/core/expect.hpp>
 
 #include <fmt/format.h>
@@ -56,42 +55,24 @@ std::optional<PrintedNumber> printed_number(std::string_view text) {
 }
 
 std::string to_text(const Finding& finding) {
-  const std::string whose = finding.group.empty() ? "" : finding.group + ": ";
-  const auto say = [&](const char* pattern) {
-    return whose +
-           fmt::format(fmt::runtime(pattern), fmt::arg("found", finding.printed), fmt::arg("bound", finding.bound));
-  };
-  switch (finding.rule) {
-    case AuditRule::MeanBelowLeast:
-      return say("mean {found:g} lies below the least possible value, {bound:g}");
-    case AuditRule::NegativeSd:
-      return say("sd {found:g} is negative");
-    case AuditRule::MaxBelowMean:
-      return say("max {found:g} lies below the mean, which is at least {bound:.4g}");
-    case AuditRule::MinAboveMean:
-      return say("min {found:g} lies above the mean, which is at most {bound:.4g}");
-    case AuditRule::SdTooLarge:
-      return say("sd {found:g} is more than mean and max allow, {bound:.4g}");
-    case AuditRule::SdTooSmall:
-      return say("sd {found:g} is less than the greatest value alone causes, {bound:.4g}");
-    case AuditRule::MeanTooSmall:
-      return say("mean {found:g} is less than the greatest value alone causes, {bound:.4g}");
-    case AuditRule::MeanNotOnGrain:
-      return say("mean {found:g} cannot be the mean of n such values; the nearest possible: {bound:.6g}");
-    case AuditRule::PooledMeanOutside:
-      return say("pooled mean {found:g} lies outside the means of its parts; the nearest reaches {bound:.4g}");
-    case AuditRule::PooledMeanOff:
-      return say("pooled mean {found:g} is not the mean of its parts weighted by n; the nearest is {bound:.4g}");
-    case AuditRule::PooledNOff:
-      return say("pooled n {found:g} is not the sum of its parts, {bound:g}");
-    case AuditRule::PooledSdTooLarge:
-      return say("pooled sd {found:g} is more than its parts allow, {bound:.4g}");
-    case AuditRule::PooledSdTooSmall:
-      return say("pooled sd {found:g} is less than its parts allow, {bound:.4g}");
-    case AuditRule::ScoreOffBaseline:
-      break;
-  }
-  return say("score {found:g} % does not follow from mean, max and the baseline; the nearest is {bound:.4g} %");
+  constexpr std::array<const char*, kAuditRuleNames.size()> kPatterns{
+      "mean {found:g} lies below the least possible value, {bound:g}",
+      "sd {found:g} is negative",
+      "max {found:g} lies below the mean, which is at least {bound:.4g}",
+      "min {found:g} lies above the mean, which is at most {bound:.4g}",
+      "sd {found:g} is more than mean and max allow, {bound:.4g}",
+      "sd {found:g} is less than the greatest value alone causes, {bound:.4g}",
+      "mean {found:g} is less than the greatest value alone causes, {bound:.4g}",
+      "mean {found:g} cannot be the mean of n such values; the nearest possible: {bound:.6g}",
+      "pooled mean {found:g} lies outside the means of its parts; the nearest reaches {bound:.4g}",
+      "pooled mean {found:g} is not the mean of its parts weighted by n; the nearest is {bound:.4g}",
+      "pooled n {found:g} is not the sum of its parts, {bound:g}",
+      "pooled sd {found:g} is more than its parts allow, {bound:.4g}",
+      "pooled sd {found:g} is less than its parts allow, {bound:.4g}",
+      "score {found:g} % does not follow from mean, max and the baseline; the nearest is {bound:.4g} %"};
+  return (finding.group.empty() ? "" : finding.group + ": ") +
+         fmt::format(fmt::runtime(kPatterns.at(static_cast<std::size_t>(finding.rule))),
+                     fmt::arg("found", finding.printed), fmt::arg("bound", finding.bound));
 }
 
 Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings) {

@@ -11,7 +11,6 @@
 #include <incise/evaluation/statistics.hpp>
 
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 

@@ -2,7 +2,6 @@
 
 #include <incise/core/describe.hpp>
 #include <incise/core/names.hpp>
-#include <incise/core/problem.hpp>
 #include <incise/evaluation/registration_score.hpp>
 
 #include <cstddef>
