@@ -55,24 +55,6 @@ Vec7 solve(Mat7 system, Vec7 right, double length, bool with_scale) {
   return units.asDiagonal() * system.ldlt().solve(right);
 }
 
-}  // namespace
-
-Vec7 pair_gradient(const SurfacePair& pair, const Vec3& center) {
-  const Vec3 arm = pair.place - center;
-  Vec7 g;
-  g << arm.cross(pair.normal), pair.normal, pair.normal.dot(arm);
-  return g;
-}
-
-Similarity nudged(const Similarity& t, const Vec7& motion, const Vec3& center) {
-  const Mat3 turn = rotation_of(motion.head<3>());
-  const double stretch = std::exp(motion[6]);
-  return {stretch * t.scale, turn * t.rotation,
-          center + motion.segment<3>(3) + stretch * (turn * (t.translation_mm - center))};
-}
-
-namespace {
-
 /// The robust sums of one Gauss-Newton step.
 struct NormalEquations {
   Mat7 system = Mat7::Zero();
@@ -131,6 +113,20 @@ std::vector<SurfacePair> mutual_pairs(const SampledSurface& source, std::span<co
 
 }  // namespace
 
+Vec7 pair_gradient(const SurfacePair& pair, const Vec3& center) {
+  const Vec3 arm = pair.place - center;
+  Vec7 g;
+  g << arm.cross(pair.normal), pair.normal, pair.normal.dot(arm);
+  return g;
+}
+
+Similarity nudged(const Similarity& t, const Vec7& motion, const Vec3& center) {
+  const Mat3 turn = rotation_of(motion.head<3>());
+  const double stretch = std::exp(motion[6]);
+  return {stretch * t.scale, turn * t.rotation,
+          center + motion.segment<3>(3) + stretch * (turn * (t.translation_mm - center))};
+}
+
 Icp icp(const SampledSurface& source, const SampledSurface& target, const Similarity& start,
         const IcpSettings& settings, Workers& workers) {
   Icp result;
@@ -145,7 +141,6 @@ Icp icp(const SampledSurface& source, const SampledSurface& target, const Simila
   std::deque<Vec7> last;  // motions, in lengths
   while (result.iterations < settings.max_iterations) {
     const std::vector<SurfacePair> pairs = mutual_pairs(source, of_source, target, of_target, t, workers);
-    result.pairs = pairs.size();
     const double wanted = std::max(kWidths * robust_sd(pairs, result.width), kLeastWidth * target.spacing);
     result.width = std::max(std::min(result.width, wanted), kShrink * result.width);
     const NormalEquations e = equations_of(pairs, result.width);

@@ -21,7 +21,6 @@ struct Icp {
   bool is_degenerate = false;  ///< too few pairs
   int iterations = 0;
   double width = 0.0;  ///< of the robust weight at the end: about 2.5 times the noise
-  std::size_t pairs = 0;  ///< in the last iteration
 };
 
 /// Point-to-plane ICP (iterated closest points) with scale and pairs from both clouds: Gauss-Newton on the distances

@@ -58,9 +58,9 @@ std::vector<WeightedPoints> levels_of(std::span<const Vec3> points) {
   return levels;
 }
 
-const WeightedPoints& level_for(const std::vector<WeightedPoints>& levels, double sigma, double share) {
+const WeightedPoints& level_for(const std::vector<WeightedPoints>& levels, double sigma) {
   for (const WeightedPoints& level : levels) {
-    if (level.cell <= share * sigma) return level;
+    if (level.cell <= 0.5 * sigma) return level;
   }
   return levels.back();
 }

@@ -18,10 +18,9 @@ struct WeightedPoints {
 /// Returns a cloud from coarse to fine: clusters of ever smaller cubes, and last the cloud itself.
 [[nodiscard]] std::vector<WeightedPoints> levels_of(std::span<const Vec3> points);
 
-/// Returns the coarsest level whose cubes are no larger than `share` times `sigma`: a cluster then widens a Gaussian's
-/// σ² by at most the fraction share²/12.
-[[nodiscard]] const WeightedPoints& level_for(const std::vector<WeightedPoints>& levels, double sigma,
-                                              double share = 0.5);
+/// Returns the coarsest level whose cubes are no larger than half of `sigma`: a cluster then widens a Gaussian's σ² by
+/// at most a 48th.
+[[nodiscard]] const WeightedPoints& level_for(const std::vector<WeightedPoints>& levels, double sigma);
 
 /// Position and size of a cloud.
 struct Measure {

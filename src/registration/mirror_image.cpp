@@ -42,7 +42,7 @@ std::vector<Similarity> reflected_in_principal_planes(const Similarity& proper, 
 Misfit mirror_image_misfit(const SampledSurface& source, const SampledSurface& target, const Similarity& proper,
                            const std::optional<PoseSearchSettings>& search, const IcpSettings& finish,
                            double score_width, Workers& workers, Monitor& monitor) {
-  const SampledSurface mirror = with_cloud(source, reflected(source.cloud));
+  const SampledSurface mirror(source, reflected(source.cloud));
   std::vector<Similarity> starts = reflected_in_principal_planes(proper, source.cloud.points);
   if (search) {
     PoseSearchSettings few = *search;

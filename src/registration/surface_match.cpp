@@ -14,33 +14,6 @@ PointCloud with_some_normals(PointCloud cloud, Workers& workers) {
   return with_normals(std::move(cloud), -Vec3::UnitZ(), kNormalNeighbours, workers);
 }
 
-}  // namespace
-
-SampledSurface::SampledSurface(PointCloud given, Workers& workers)
-    : cloud(with_some_normals(given, workers)),
-      has_oriented_normals(!given.normals.empty()),
-      spacing(spacing_mm(given.points)),
-      roughness(roughness_mm(given.points)),
-      search(given.points) {}
-
-SampledSurface::SampledSurface(const SampledSurface& like, PointCloud moved)
-    : cloud(std::move(moved)),
-      has_oriented_normals(like.has_oriented_normals),
-      spacing(like.spacing),
-      roughness(like.roughness),
-      search(cloud.points) {}
-
-SampledSurface with_cloud(const SampledSurface& like, PointCloud moved) {
-  return {like, std::move(moved)};
-}
-
-double target_share(const SampledSurface& source, const SampledSurface& target) {
-  const double all = source.roughness * source.roughness + target.roughness * target.roughness;
-  return all > 0.0 ? target.roughness * target.roughness / all : 0.5;
-}
-
-namespace {
-
 /// Returns the two points as a pair, if the source point lies above the target and the normals agree.
 std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t index, const Vec3& place,
                                   const SampledSurface& target, std::size_t near, const Similarity& t) {
@@ -60,6 +33,25 @@ std::optional<SurfacePair> paired(const SampledSurface& source, std::size_t inde
 }
 
 }  // namespace
+
+SampledSurface::SampledSurface(PointCloud given, Workers& workers)
+    : cloud(with_some_normals(given, workers)),
+      has_oriented_normals(!given.normals.empty()),
+      spacing(spacing_mm(given.points)),
+      roughness(roughness_mm(given.points)),
+      search(given.points) {}
+
+SampledSurface::SampledSurface(const SampledSurface& like, PointCloud moved)
+    : cloud(std::move(moved)),
+      has_oriented_normals(like.has_oriented_normals),
+      spacing(like.spacing),
+      roughness(like.roughness),
+      search(cloud.points) {}
+
+double target_share(const SampledSurface& source, const SampledSurface& target) {
+  const double all = source.roughness * source.roughness + target.roughness * target.roughness;
+  return all > 0.0 ? target.roughness * target.roughness / all : 0.5;
+}
 
 std::optional<SurfacePair> pair_of(const SampledSurface& source, std::size_t index, const SampledSurface& target,
                                    const Similarity& t) {

@@ -41,14 +41,9 @@ struct SampledSurface {
 
   /// @param cloud  if it has no normals, they are fitted, and their sign has no meaning.
   SampledSurface(PointCloud cloud, Workers& workers);
-
- private:
+  /// The same surface, moved or reflected as a whole without a change of size: keeps spacing and roughness.
   SampledSurface(const SampledSurface& like, PointCloud moved);
-  friend SampledSurface with_cloud(const SampledSurface& like, PointCloud moved);
 };
-
-/// Returns the same surface, moved or reflected as a whole without a change of size: keeps spacing and roughness.
-[[nodiscard]] SampledSurface with_cloud(const SampledSurface& like, PointCloud moved);
 
 /// A source point paired with the target's surface.
 struct SurfacePair {
