@@ -193,12 +193,6 @@ CtVolume scan_with(const TongueShape& shape, const PhantomSettings& settings, Ra
   return ct;
 }
 
-Vec3 middle_of_body(const TongueShape& shape) {
-  const double x = midline_x_mm(shape, 0.0);
-  const std::optional<TissueSpan> span = span_at(shape, x, 0.0);
-  return {x, 0.0, 0.5 * (span->low_mm + span->high_mm)};
-}
-
 Vec3 on_back(const TongueShape& shape, double x_mm, double y_mm) {
   const std::optional<TissueSpan> span = span_at(shape, x_mm, y_mm);
   INCISE_REQUIRE(span.has_value(), "expected a tumour that fits on the back of the tongue; reduce tumor_diameter_mm");
@@ -289,10 +283,8 @@ Phantom make_phantom(const PhantomSettings& settings, Monitor& monitor) {
   Phantom phantom;
   phantom.shape = draw_tongue_shape(settings.shape, random);
   phantom.true_volume_mm3 = volume_mm3(phantom.shape);
-  phantom.bounds_mm = bounds_mm(phantom.shape);
   phantom.tip_end_mm = -0.5 * phantom.shape.length_mm;
   phantom.posterior_end_mm = 0.5 * phantom.shape.length_mm;
-  phantom.seed_mm = middle_of_body(phantom.shape);
   draw_tumor(settings, random, phantom);
   phantom.ct = scan_with(phantom.shape, settings, random, monitor);
   return phantom;

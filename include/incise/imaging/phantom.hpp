@@ -68,8 +68,6 @@ struct Phantom {
   double tip_end_mm = 0.0;              ///< y of the tip
   double posterior_end_mm = 0.0;        ///< y of the root
   double platform_z_mm = 0.0;           ///< z of the plane on which the underside rests
-  Vec3 seed_mm = Vec3::Zero();          ///< a point well inside the tissue, to seed a segmentation
-  Box3 bounds_mm;                       ///< contains the tissue
 };
 
 /// Makes a tongue-like specimen on a plastic board and its CT: exact shape -> partial volume (exact along z, 5 x 5
