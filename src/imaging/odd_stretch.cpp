@@ -27,7 +27,7 @@ constexpr double kLeastKnown = 0.6;  // share of a stretch that must be known
 
 using Values = std::array<std::vector<double>, kFeatures>;
 
-double grey_at(const cv::Mat& grey, const Vec2& p) {
+double nearest_grey(const cv::Mat& grey, const Vec2& p) {
   const int u = std::clamp(static_cast<int>(std::lround(p.x())), 0, grey.cols - 1);
   const int v = std::clamp(static_cast<int>(std::lround(p.y())), 0, grey.rows - 1);
   return grey.at<std::uint8_t>(v, u) + 1.0;
@@ -53,10 +53,10 @@ Values features_of(const cv::Mat& grey, const InkMap& map, const MarkedLine& lin
       strength = std::max(strength, likelihood);
       if (likelihood <= 0.5) continue;
       width += kStep;
-      light += kStep * grey_at(grey, q);
+      light += kStep * nearest_grey(grey, q);
     }
     // The kerf outside is dark and of varying width, so lightness is compared with the tissue inside.
-    const double inside = grey_at(grey, p + (from - kBesidePx) * normal);
+    const double inside = nearest_grey(grey, p + (from - kBesidePx) * normal);
     const bool is_known = !is_hidden && width > 0.0;
     values[0].push_back(is_known ? width : kUnknown);
     values[1].push_back(is_known ? strength : kUnknown);
