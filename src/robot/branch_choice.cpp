@@ -85,8 +85,10 @@ double merit_of(const std::vector<Joints>& q, const ArmSetup& setup, const Branc
     const double margin = std::min((q[i] - setup.arm.min_rad).minCoeff(), (setup.arm.max_rad - q[i]).minCoeff());
     merit = std::min(merit, units::deg_from_rad(margin) / preferences.good_joint_margin_deg);
     merit = std::min(merit, table_clearance_mm(setup.arm, q[i], setup.table_z_mm) / preferences.good_clearance_mm);
-    merit = std::min(merit, arm_clearance_mm(hulls_at(setup.arm, q[i], instrument, setup.table_z_mm)) /
-                                preferences.good_arm_clearance_mm);
+    const Hulls hulls = hulls_at(setup.arm, q[i], instrument, setup.table_z_mm);
+    const double clearance_mm =
+        std::min(least_distance_mm(hulls, base_pairs()), least_distance_mm(hulls, self_pairs()));
+    merit = std::min(merit, clearance_mm / preferences.good_arm_clearance_mm);
     merit = std::min(merit, smallest_singular_value(setup.arm, q[i]) / preferences.good_singular_value);
   }
   return merit;

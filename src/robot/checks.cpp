@@ -189,7 +189,7 @@ class CourseChecker {
     Worst fastest, slowest;
     for (std::size_t i = 0; i < program_.poses.size(); ++i) {
       const ProgramPose& pose = program_.poses[i];
-      if (pose.phase != ProgramPhase::Cut && pose.phase != ProgramPhase::Overlap) continue;
+      if (!is_cut(pose.phase)) continue;
       fastest.see(pose.tip_speed_mm_s, i);
       slowest.see(-pose.tip_speed_mm_s, i);
     }

@@ -16,14 +16,9 @@ namespace {
 constexpr double kCloselyMm = 0.05;  // accuracy of a distance that may be the least
 constexpr double kRoughShare = 0.1;  // accuracy of the others, as a share of the distance
 
-const Capsule& of(const Hulls& hulls, Hull hull) {
-  return hulls[static_cast<std::size_t>(hull)];
-}
-
 /// The hulls at every sample of the program's motion.
 std::vector<Hulls> hulls_of(const RobotProgram& program, const CheckSettings& settings) {
-  const Instrument instrument{program.setup.T_flange_tool, settings.needle_length_mm, settings.needle_radius_mm,
-                              settings.shaft_radius_mm};
+  const Instrument instrument = instrument_of(program.setup.T_flange_tool, settings);
   std::vector<Hulls> all;
   all.reserve(program.motion.samples.size());
   for (const JointSample& sample : program.motion.samples)
@@ -116,9 +111,7 @@ void check_surface(CheckList& list, const TriMesh& surface, const std::vector<Hu
   const RobotProgram& program = list.program();
   const SurfaceProbe probe(surface);
   SurfaceWatch links(probe), shaft(probe), needle(probe);
-  const bool has_shaft = !Instrument{program.setup.T_flange_tool, settings.needle_length_mm, settings.needle_radius_mm,
-                                     settings.shaft_radius_mm}
-                              .is_needle_alone();
+  const bool has_shaft = !instrument_of(program.setup.T_flange_tool, settings).is_needle_alone();
   for (std::size_t i = 0; i < hulls.size(); ++i) {
     const std::size_t pose = program.motion.samples[i].pose;
     for (const Hull hull : kLinks) links.see(hull, of(hulls[i], hull), half_step_mm(hulls, i, hull), pose);

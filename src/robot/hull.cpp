@@ -108,13 +108,9 @@ std::span<const HullPair> self_pairs() {
   return kSelfPairs;
 }
 
-double arm_clearance_mm(const Hulls& hulls) {
+double least_distance_mm(const Hulls& hulls, std::span<const HullPair> pairs) {
   double least = std::numeric_limits<double>::infinity();
-  for (const auto& pairs : {base_pairs(), self_pairs()}) {
-    for (const HullPair& pair : pairs)
-      least = std::min(least,
-                       distance_mm(hulls[static_cast<std::size_t>(pair.a)], hulls[static_cast<std::size_t>(pair.b)]));
-  }
+  for (const HullPair& pair : pairs) least = std::min(least, distance_mm(of(hulls, pair.a), of(hulls, pair.b)));
   return least;
 }
 

@@ -23,8 +23,12 @@ struct HullPair {
 [[nodiscard]] std::span<const HullPair> base_pairs();  ///< with the base or the shoulder
 [[nodiscard]] std::span<const HullPair> self_pairs();  ///< without base and shoulder
 
-/// Returns the least distance of all these pairs, mm.
-[[nodiscard]] double arm_clearance_mm(const Hulls& hulls);
+[[nodiscard]] inline const Capsule& of(const Hulls& hulls, Hull hull) {
+  return hulls[static_cast<std::size_t>(hull)];
+}
+
+/// Returns the least distance of some pairs, mm.
+[[nodiscard]] double least_distance_mm(const Hulls& hulls, std::span<const HullPair> pairs);
 
 /// Distance of a point from a fixed object, mm.
 using PointDistance = std::function<double(const Vec3&)>;

@@ -17,7 +17,7 @@ double ramp_s(const RobotProgram& program) {
   constexpr double kMoreS = 0.02;
   double speed = 0.0;
   for (const ProgramPose& pose : program.poses) {
-    if (is_cut(pose)) speed = std::max(speed, pose.tip_speed_mm_s);
+    if (is_cut(pose.phase)) speed = std::max(speed, pose.tip_speed_mm_s);
   }
   const double a = program.settings.acceleration_mm_s2, j = program.settings.jerk_mm_s3;
   return kMoreS + (speed > a * a / j ? speed / a + a / j : 2.0 * std::sqrt(speed / j));
@@ -28,7 +28,8 @@ std::vector<double> changes_s(const RobotProgram& program) {
   std::vector<double> times;
   for (std::size_t i = 1; i < program.poses.size(); ++i) {
     const ProgramPose &before = program.poses[i - 1], &pose = program.poses[i];
-    if (is_cut(before) != is_cut(pose) || before.tip_speed_mm_s != pose.tip_speed_mm_s) times.push_back(before.time_s);
+    if (is_cut(before.phase) != is_cut(pose.phase) || before.tip_speed_mm_s != pose.tip_speed_mm_s)
+      times.push_back(before.time_s);
   }
   return times;
 }
@@ -36,10 +37,7 @@ std::vector<double> changes_s(const RobotProgram& program) {
 void check_tip_speed(CheckList& list, const CheckSettings& settings) {
   const RobotProgram& program = list.program();
   const auto& samples = program.motion.samples;
-  const auto tip = [&](std::size_t i) {
-    return Vec3(
-        (forward_kinematics(program.setup.arm, samples[i].q_rad) * program.setup.T_flange_tool).topRightCorner<3, 1>());
-  };
+  const auto tip = [&](std::size_t i) { return tip_at(program.setup, samples[i].q_rad); };
   const std::vector<double> changes = changes_s(program);
   const double ramp = ramp_s(program);
   const auto is_near_a_change = [&](double time_s) {
@@ -49,7 +47,7 @@ void check_tip_speed(CheckList& list, const CheckSettings& settings) {
   for (std::size_t i = 1; i < samples.size(); ++i) {
     if (samples[i].pose + 1 >= program.poses.size()) continue;
     const ProgramPose& next = program.poses[samples[i].pose + 1];
-    if (!is_cut(next) || is_near_a_change(samples[i].time_s)) continue;
+    if (!is_cut(next.phase) || is_near_a_change(samples[i].time_s)) continue;
     const double speed = (tip(i) - tip(i - 1)).norm() / program.motion.period_s;
     worst.see(std::abs(speed / next.tip_speed_mm_s - 1.0), samples[i].pose);
   }
@@ -107,9 +105,7 @@ void check_depth_in(CheckList& list, const TriMesh& surface, double depth_mm, do
   Worst worst;
   for (std::size_t i = 0; i < program.poses.size(); ++i) {
     const ProgramPose& pose = program.poses[i];
-    const bool is_in_tissue =
-        pose.phase == ProgramPhase::Plunge || pose.phase == ProgramPhase::Cut || pose.phase == ProgramPhase::Overlap;
-    if (!is_in_tissue) continue;
+    if (pose.phase != ProgramPhase::Plunge && !is_cut(pose.phase)) continue;
     const auto depth = probe.depth_mm(pose.tip_mm, pose.R_robot_tool.col(2));
     if (!depth) {
       list.holds("depth", false, "the surface has a gap below the tool: the tool's depth is not known there", i);

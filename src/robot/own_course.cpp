@@ -113,12 +113,9 @@ class Follower {
     const std::size_t low = last_ > kWindow ? last_ - kWindow : 0;
     const std::size_t high = std::min(places_.size() - 1, last_ + kWindow);
     for (std::size_t i = low; i < high; ++i) {
-      const Vec3 along = places_[i + 1].tip_mm - places_[i].tip_mm;
-      const double length2 = along.squaredNorm();
-      const double t = length2 > 0.0 ? std::clamp((tip_mm - places_[i].tip_mm).dot(along) / length2, 0.0, 1.0) : 0.0;
-      const double distance = (tip_mm - places_[i].tip_mm - t * along).norm();
-      if (distance >= best.distance_mm) continue;
-      best = {i, places_[i].arc_mm + t * (places_[i + 1].arc_mm - places_[i].arc_mm), distance,
+      const auto [t, distance_mm] = nearest_on_segment(tip_mm, places_[i].tip_mm, places_[i + 1].tip_mm);
+      if (distance_mm >= best.distance_mm) continue;
+      best = {i, places_[i].arc_mm + t * (places_[i + 1].arc_mm - places_[i].arc_mm), distance_mm,
               ((1.0 - t) * places_[i].axis + t * places_[i + 1].axis).normalized()};
     }
     last_ = best.index;
@@ -247,8 +244,7 @@ void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel&
   const ProgramRecord record = program.record.value_or(ProgramRecord{});
   const CheckSettings& limits = record.limits;
   const double table_z_mm = record.setup.table_z_mm;
-  const Instrument instrument{program.T_flange_tool, limits.needle_length_mm, limits.needle_radius_mm,
-                              limits.shaft_radius_mm};
+  const Instrument instrument = instrument_of(program.T_flange_tool, limits);
   struct Limit {
     const char* name;
     double least, found, time_s;
@@ -263,19 +259,12 @@ void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel&
   for (std::size_t i = 0; i < replay.samples.size(); i += kStride) {
     const ReplaySample& sample = replay.samples[i];
     const Hulls hulls = hulls_at(arm, sample.q_rad, instrument, table_z_mm);
-    const auto least_of = [&hulls](std::span<const HullPair> pairs) {
-      double least = kFar;
-      for (const HullPair& pair : pairs)
-        least = std::min(least,
-                         distance_mm(hulls[static_cast<std::size_t>(pair.a)], hulls[static_cast<std::size_t>(pair.b)]));
-      return least;
-    };
-    const Capsule& shaft = hulls[static_cast<std::size_t>(Hull::Shaft)];
+    const Capsule& shaft = of(hulls, Hull::Shaft);
     const double found[]{
         table_clearance_mm(arm, sample.q_rad, table_z_mm),
         std::min(sample.tip_mm.z(), std::min(shaft.from_mm.z(), shaft.to_mm.z()) - shaft.radius_mm) - table_z_mm,
-        least_of(self_pairs()),
-        least_of(base_pairs()),
+        least_distance_mm(hulls, self_pairs()),
+        least_distance_mm(hulls, base_pairs()),
         units::deg_from_rad(std::min((sample.q_rad - arm.min_rad).minCoeff(), (arm.max_rad - sample.q_rad).minCoeff())),
         smallest_singular_value(arm, sample.q_rad)};
     for (std::size_t k = 0; k < all.size(); ++k) {

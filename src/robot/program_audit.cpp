@@ -1,5 +1,7 @@
 #include "robot/own_course.hpp"
+#include "robot/program_reading.hpp"
 #include "robot/program_record.hpp"
+#include "robot/text_form.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/verdict.hpp>
@@ -50,16 +52,11 @@ std::optional<std::pair<std::string, Claim>> claim_of(const std::string& text) {
   Claim claim{.text = text, .is_passed = verdict == "passed" || verdict == "passed:"};
   const bool has_value = verdict.ends_with(':');
   if (!claim.is_passed && verdict != "FAILED" && verdict != "FAILED:") return std::nullopt;
-  const auto number = [&word] {
-    char* end = nullptr;
-    const double value = std::strtod(word.c_str(), &end);
-    return end != word.c_str() && *end == '\0' ? std::optional(value) : std::nullopt;
-  };
   if (has_value) {
-    if (!(words >> word) || !(claim.value = number())) return std::nullopt;
+    if (!(words >> word) || !(claim.value = robot_detail::number_of(word))) return std::nullopt;
     while (words >> word && word != "<=" && word != ">=" && word != "<" && word != ">") {
     }
-    if (!(words >> word) || !(claim.limit = number())) return std::nullopt;
+    if (!(words >> word) || !(claim.limit = robot_detail::number_of(word))) return std::nullopt;
   }
   return std::pair(name, claim);
 }
@@ -222,9 +219,8 @@ class Auditor {
     for (const auto& [key, value] :
          {std::pair("duration_s", made.duration_s()), std::pair("cut_length_mm", made.cut_length_mm)}) {
       const std::string text = told(key);
-      char* end = nullptr;
-      const double number = std::strtod(text.c_str(), &end);
-      if (end == text.c_str() || *end != '\0' || !is_same(number, value, 0.0))
+      const auto number = robot_detail::number_of(text);
+      if (!number || !is_same(*number, value, 0.0))
         contradict(fmt::format("{} {}, recomputed {:.6f}", key, text, value));
     }
     for (const auto& [key, value] :
@@ -306,8 +302,7 @@ class Auditor {
         return (*row.acceleration_rad_s2 - a).cwiseAbs().maxCoeff() <=
                kSameRad_s2 + kSameShare * a.cwiseAbs().maxCoeff();
       };
-      const Vec3 tip =
-          (forward_kinematics(made.setup.arm, row.q_rad) * made.setup.T_flange_tool).topRightCorner<3, 1>();
+      const Vec3 tip = robot_detail::tip_at(made.setup, row.q_rad);
       const bool is_same_row = (row.q_rad - samples[i].q_rad).cwiseAbs().maxCoeff() <= kSameAngleRad &&
                                (row.speed_rad_s - samples[i].speed_rad_s).cwiseAbs().maxCoeff() <= kSameRad_s &&
                                std::abs(row.time_s - samples[i].time_s) <= kSameS &&

@@ -23,6 +23,7 @@ void require_finite(const RobotProgram& program) {
 }
 
 void require_motion(const RobotProgram& program) {
+  require_finite(program);
   INCISE_REQUIRE(
       program.motion.outcome == MotionOutcome::Found && !program.motion.samples.empty(),
       fmt::format("expected a program that the arm can follow, found {}", to_string(program.motion.outcome)));

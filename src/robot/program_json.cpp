@@ -117,10 +117,8 @@ std::string program_json(const RobotProgram& program, const ProgramChecks* check
   for (const JointSample& sample : program.motion.samples) {
     MotionRow& row = file.motion.rows.emplace_back();
     row[0] = sample.time_s;
-    for (std::size_t i = 0; i < 6; ++i) {
-      row[1 + i] = sample.q_rad[static_cast<int>(i)];
-      row[7 + i] = sample.speed_rad_s[static_cast<int>(i)];
-    }
+    Joints::Map(&row[1]) = sample.q_rad;
+    Joints::Map(&row[7]) = sample.speed_rad_s;
   }
   if (checks != nullptr) {
     file.checks.emplace();
@@ -143,11 +141,7 @@ WrittenProgram robot_detail::read_program_json(std::string_view text, const std:
   std::size_t next = 0;
   for (std::size_t k = 0; k < file.motion.rows.size(); ++k) {
     const MotionRow& row = file.motion.rows[k];
-    TimedJoints joints{.time_s = row[0]};
-    for (std::size_t i = 0; i < 6; ++i) {
-      joints.q_rad[static_cast<int>(i)] = row[1 + i];
-      joints.speed_rad_s[static_cast<int>(i)] = row[7 + i];
-    }
+    TimedJoints joints{.time_s = row[0], .q_rad = Joints::Map(&row[1]), .speed_rad_s = Joints::Map(&row[7])};
     while (next + 1 < program.listed_poses.size() && program.listed_poses[next].time_s <= joints.time_s) ++next;
     joints.phase = program.listed_poses[next].phase;
     add_row(program, joints, [&](const std::string& found, const std::string& expected) {

@@ -6,6 +6,8 @@
 #include "robot/text_form.hpp"
 #include "robot/tip_curve.hpp"
 
+#include <incise/core/error.hpp>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,11 +31,10 @@ std::vector<double> numbers_of(const std::string& value, std::size_t count, cons
   std::vector<double> numbers;
   std::string word;
   while (words >> word) {
-    char* end = nullptr;
-    const double number = std::strtod(word.c_str(), &end);
-    if (end == word.c_str() || *end != '\0' || !std::isfinite(number))
+    const auto number = number_of(word);
+    if (!number || !std::isfinite(*number))
       throw DataError(file, "header " + key, fmt::format("'{}'", word), "a finite number");
-    numbers.push_back(number);
+    numbers.push_back(*number);
   }
   if (numbers.size() != count)
     throw DataError(file, "header " + key, fmt::format("{} numbers", numbers.size()), fmt::format("{}", count));
@@ -79,6 +80,12 @@ void require_course(const ToolPath& path, double overlap_mm, const std::filesyst
 
 void LinePlace::fail(const std::string& found, const std::string& expected, const std::string& hint) const {
   throw DataError(file, fmt::format("line {}", line), found, expected, hint);
+}
+
+std::optional<double> number_of(const std::string& text) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  return end != text.c_str() && *end == '\0' ? std::optional(number) : std::nullopt;
 }
 
 void add_row(WrittenProgram& program, const TimedJoints& row, const Complain& fail) {
@@ -207,11 +214,6 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
   WrittenProgram program;
   std::istringstream lines{std::string(text)};
   LinePlace place{file};
-  std::string expected_head = "time_s";
-  for (const char* unit : {"_rad", "_rad_s", "_rad_s2"}) {
-    for (const std::string& name : ur10e().joint_names) expected_head += "," + name + unit;
-  }
-  expected_head += ",tip_x_mm,tip_y_mm,tip_z_mm,phase";
   bool has_head = false;
   for (std::string line; std::getline(lines, line);) {
     ++place.line;
@@ -220,7 +222,7 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
     if (line.front() == '#') {
       read_comment(line, program);
     } else if (!has_head) {
-      if (line != expected_head)
+      if (line != joint_csv_columns(ur10e()))
         place.fail(fmt::format("'{:.60}'", line),
                    "the columns that `incise export` writes: time_s,shoulder_pan_joint_rad…");
       has_head = true;
@@ -232,24 +234,16 @@ WrittenProgram read_joint_csv(std::string_view text, const std::filesystem::path
       if (cells.size() != kColumns) place.fail(fmt::format("{} columns", cells.size()), fmt::format("{}", kColumns));
       std::array<double, kColumns - 1> numbers{};
       for (std::size_t i = 0; i < numbers.size(); ++i) {
-        char* end = nullptr;
-        numbers[i] = std::strtod(cells[i].c_str(), &end);
-        if (end == cells[i].c_str() || *end != '\0' || !std::isfinite(numbers[i]))
+        const auto number = number_of(cells[i]);
+        if (!number || !std::isfinite(*number))
           place.fail(fmt::format("'{}' in column {}", cells[i], i + 1), "a finite number");
+        numbers[i] = *number;
       }
-      TimedJoints joints{numbers[0],
-                         Joints::Zero(),
-                         Joints::Zero(),
-                         phase_of(cells.back(), place.complain()),
-                         place.line,
-                         Joints::Zero(),
-                         Vec3(numbers[19], numbers[20], numbers[21])};
-      for (int i = 0; i < 6; ++i) {
-        joints.q_rad[i] = numbers[static_cast<std::size_t>(1 + i)];
-        joints.speed_rad_s[i] = numbers[static_cast<std::size_t>(7 + i)];
-        (*joints.acceleration_rad_s2)[i] = numbers[static_cast<std::size_t>(13 + i)];
-      }
-      add_row(program, joints, place.complain());
+      const auto six_from = [&numbers](std::size_t first) { return Joints(Joints::Map(&numbers[first])); };
+      const ProgramPhase phase = phase_of(cells.back(), place.complain());
+      const Vec3 tip_mm(numbers[19], numbers[20], numbers[21]);
+      add_row(program, {numbers[0], six_from(1), six_from(7), phase, place.line, six_from(13), tip_mm},
+              place.complain());
     }
   }
   if (program.joints.size() < 2) place.fail(fmt::format("{} rows", program.joints.size()), "at least 2 rows of joints");

@@ -21,6 +21,9 @@ struct LinePlace {
   }
 };
 
+/// Returns the number that the whole text is; nothing for another text.
+[[nodiscard]] std::optional<double> number_of(const std::string& text);
+
 /// Adds a line `# incise.KEY: VALUE` to the program's header; ignores other comments.
 void read_comment(const std::string& line, WrittenProgram& program);
 

@@ -21,21 +21,23 @@ std::string list_of(const Values& values) {
 
 }  // namespace
 
-std::string to_joint_csv(const RobotProgram& program, const ProgramHeader& header) {
-  robot_detail::require_finite(program);
-  robot_detail::require_motion(program);
-  std::string text = robot_detail::header_lines(header) + "time_s";
+std::string robot_detail::joint_csv_columns(const ArmModel& arm) {
+  std::string columns = "time_s";
   for (const char* unit : {"_rad", "_rad_s", "_rad_s2"}) {
-    for (const std::string& name : program.setup.arm.joint_names) text += "," + name + unit;
+    for (const std::string& name : arm.joint_names) columns += "," + name + unit;
   }
-  text += ",tip_x_mm,tip_y_mm,tip_z_mm,phase\n";
+  return columns + ",tip_x_mm,tip_y_mm,tip_z_mm,phase";
+}
+
+std::string to_joint_csv(const RobotProgram& program, const ProgramHeader& header) {
+  robot_detail::require_motion(program);
+  std::string text = robot_detail::header_lines(header) + robot_detail::joint_csv_columns(program.setup.arm) + "\n";
   for (const JointSample& s : program.motion.samples) {
     text += fmt::format("{:.6f}", s.time_s);
     for (int i = 0; i < 6; ++i) text += fmt::format(",{:.10f}", s.q_rad[i]);
     for (int i = 0; i < 6; ++i) text += fmt::format(",{:.8f}", s.speed_rad_s[i]);
     for (int i = 0; i < 6; ++i) text += fmt::format(",{:.6f}", s.acceleration_rad_s2[i]);
-    const Vec3 tip =
-        (forward_kinematics(program.setup.arm, s.q_rad) * program.setup.T_flange_tool).topRightCorner<3, 1>();
+    const Vec3 tip = robot_detail::tip_at(program.setup, s.q_rad);
     const ProgramPhase phase = program.poses[std::min(s.pose + 1, program.poses.size() - 1)].phase;
     text += fmt::format(",{:.6f},{:.6f},{:.6f},{}\n", tip.x(), tip.y(), tip.z(), to_string(phase));
   }
@@ -43,7 +45,6 @@ std::string to_joint_csv(const RobotProgram& program, const ProgramHeader& heade
 }
 
 std::string to_ros_yaml(const RobotProgram& program, const ProgramHeader& header) {
-  robot_detail::require_finite(program);
   robot_detail::require_motion(program);
   std::string text = robot_detail::header_lines(header);
   text += "header:\n  stamp: {sec: 0, nanosec: 0}\n  frame_id: base\njoint_names:\n";

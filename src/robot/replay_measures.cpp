@@ -15,10 +15,6 @@ namespace {
 
 constexpr double kIntendedSpacingMm = 0.05;  // chords deviate by 2e-5 mm at 15 mm radius
 
-bool is_cut(ProgramPhase phase) {
-  return phase == ProgramPhase::Cut || phase == ProgramPhase::Overlap;
-}
-
 }  // namespace
 
 Points intended_course(const ToolPath& path, const WrittenProgram& program) {
@@ -55,10 +51,7 @@ class CourseDistance {
   double search(const Vec3& p, std::size_t low, std::size_t high) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = low; i < high; ++i) {
-      const Vec3 along = course_[i + 1] - course_[i];
-      const double length2 = along.squaredNorm();
-      const double t = length2 > 0.0 ? std::clamp((p - course_[i]).dot(along) / length2, 0.0, 1.0) : 0.0;
-      const double distance = (p - course_[i] - t * along).norm();
+      const double distance = nearest_on_segment(p, course_[i], course_[i + 1]).distance_mm;
       if (distance >= nearest) continue;
       nearest = distance;
       last_ = i;

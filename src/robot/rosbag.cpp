@@ -13,7 +13,7 @@ static_assert(std::endian::native == std::endian::little,
               "bags are little endian, and so are the numbers written here");
 
 constexpr std::size_t kBagHeaderRecord = 4096;
-constexpr std::uint32_t kStampS = 1;  // time 0 means "now" to ROS
+constexpr std::uint64_t kStamp = 1;  // s in the low, ns in the high 32 bits; time 0 means "now" to ROS
 constexpr std::uint8_t kOpMessage = 0x02, kOpBagHeader = 0x03, kOpIndex = 0x04, kOpChunk = 0x05, kOpChunkInfo = 0x06,
                        kOpConnection = 0x07;
 
@@ -67,14 +67,8 @@ std::string connection_record(const Connection& c) {
   return record(header, data.data());
 }
 
-std::uint64_t stamp() {
-  return kStampS;  // seconds in the low, nanoseconds in the high 32 bits
-}
-
-const char* const kSeparator = "================================================================================\n";
-
 std::string trajectory_definition() {
-  const std::string line = kSeparator;
+  const std::string line = std::string(80, '=') + "\n";
   return "Header header\nstring[] joint_names\nJointTrajectoryPoint[] points\n" + line +
          "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n" + line +
          "MSG: trajectory_msgs/JointTrajectoryPoint\nfloat64[] positions\nfloat64[] velocities\nfloat64[] "
@@ -98,7 +92,6 @@ std::string trajectory_message(const RobotProgram& program) {
 }  // namespace
 
 std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header) {
-  robot_detail::require_finite(program);
   robot_detail::require_motion(program);
   // The MD5 sums are those that ROS computes from the definitions; a subscriber refuses others.
   const Connection connections[] = {
@@ -113,14 +106,14 @@ std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header) 
     chunk += connection_record(c);
     connection_records += connection_record(c);
     const auto offset = static_cast<std::uint32_t>(chunk.size());
-    chunk += record(Bytes().field_number("op", kOpMessage).field_number("conn", c.id).field_number("time", stamp()),
+    chunk += record(Bytes().field_number("op", kOpMessage).field_number("conn", c.id).field_number("time", kStamp),
                     c.message);
     indices += record(Bytes()
                           .field_number("op", kOpIndex)
                           .field_number("ver", std::uint32_t{1})
                           .field_number("conn", c.id)
                           .field_number("count", std::uint32_t{1}),
-                      Bytes().number(stamp()).number(offset).data());
+                      Bytes().number(kStamp).number(offset).data());
     counts.number(c.id).number(std::uint32_t{1});
   }
 
@@ -143,8 +136,8 @@ std::string to_rosbag(const RobotProgram& program, const ProgramHeader& header) 
                                             .field_number("op", kOpChunkInfo)
                                             .field_number("ver", std::uint32_t{1})
                                             .field_number("chunk_pos", chunk_pos)
-                                            .field_number("start_time", stamp())
-                                            .field_number("end_time", stamp())
+                                            .field_number("start_time", kStamp)
+                                            .field_number("end_time", kStamp)
                                             .field_number("count", std::uint32_t{2}),
                                         counts.data());
   return robot_detail::sealed(magic + record(bag_header, std::string(padding, ' ')) + chunk_record + indices +

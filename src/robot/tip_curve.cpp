@@ -13,14 +13,14 @@ namespace {
 constexpr std::size_t kFinePerPiece = 64;  // chords this short deviate from the curve by less than 0.02 mm / 1000
 constexpr double kLeastGapMm = 1e-3;
 
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double length2 = along.squaredNorm();
-  const double t = length2 > 0.0 ? std::clamp((p - a).dot(along) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * along).norm();
-}
-
 }  // namespace
+
+SegmentPlace nearest_on_segment(const Vec3& p, const Vec3& begin, const Vec3& end) {
+  const Vec3 along = end - begin;
+  const double length2 = along.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp((p - begin).dot(along) / length2, 0.0, 1.0) : 0.0;
+  return {t, (p - begin - t * along).norm()};
+}
 
 std::vector<TipCurve::Knot> TipCurve::knots(const std::vector<Vec3>& values, const std::vector<double>& chords,
                                             bool is_closed) {
@@ -131,9 +131,8 @@ double TipCurve::chord_error_mm(std::size_t moves) const {
   for (std::size_t move = 0; move < moves; ++move) {
     const double end = spacing * static_cast<double>(move + 1);
     const Vec3 a = at(spacing * static_cast<double>(move)).tip_mm, b = at(std::min(end, length_mm())).tip_mm;
-    for (; fine < fine_.size() && fine_[fine].arc_mm <= end; ++fine) {
-      worst = std::max(worst, distance_to_segment(fine_[fine].tip_mm, a, b));
-    }
+    for (; fine < fine_.size() && fine_[fine].arc_mm <= end; ++fine)
+      worst = std::max(worst, nearest_on_segment(fine_[fine].tip_mm, a, b).distance_mm);
   }
   return worst;
 }

@@ -6,6 +6,13 @@
 
 namespace incise::robot_detail {
 
+/// The place of a segment that is nearest to a point.
+struct SegmentPlace {
+  double share = 0.0;  ///< of the way from its begin to its end
+  double distance_mm = 0.0;
+};
+[[nodiscard]] SegmentPlace nearest_on_segment(const Vec3& p, const Vec3& begin, const Vec3& end);
+
 /// A place on the tip's course.
 struct TipSample {
   Vec3 tip_mm = Vec3::Zero();

@@ -13,8 +13,6 @@
 namespace incise {
 namespace {
 
-using robot_detail::is_cut;
-
 bool is_identifier(const std::string& name) {
   const std::string letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_";
   return !name.empty() && letters.find(name[0]) != std::string::npos &&
@@ -39,7 +37,7 @@ std::string tcp_line(const Mat4& T_flange_tool) {
 
 /// Blend radius at pose i, m; 0 where the course stops.
 double blend_m(const RobotProgram& program, std::size_t i, double fraction) {
-  if (i + 1 >= program.poses.size() || !is_cut(program.poses[i + 1])) return 0.0;
+  if (i + 1 >= program.poses.size() || !is_cut(program.poses[i + 1].phase)) return 0.0;
   const double before = (program.poses[i].tip_mm - program.poses[i - 1].tip_mm).norm();
   const double after = (program.poses[i + 1].tip_mm - program.poses[i].tip_mm).norm();
   return units::m_from_mm(fraction * std::min(before, after));
@@ -56,7 +54,7 @@ std::string moves(const RobotProgram& program, const UrScriptSettings& settings)
     const double v = units::m_from_mm(pose.tip_speed_mm_s);
     if (pose.phase == ProgramPhase::Dwell) {
       text += fmt::format("  sleep({:.3f})\n", pose.time_s - program.poses[i - 1].time_s);
-    } else if (is_cut(pose)) {
+    } else if (is_cut(pose.phase)) {
       text += fmt::format("  movep({}, a={:.4f}, v={:.6f}, r={:.6f})\n", place, a, v,
                           blend_m(program, i, settings.blend_fraction));
     } else {
@@ -101,7 +99,6 @@ std::vector<Problem> validate(const UrScriptSettings& s) {
 }
 
 std::string to_urscript(const RobotProgram& program, const ProgramHeader& header, const UrScriptSettings& settings) {
-  robot_detail::require_finite(program);
   robot_detail::require_motion(program);
   require_none(validate(settings));
   std::string text = robot_detail::header_lines(header);

@@ -71,7 +71,7 @@ class Scanner {
   std::size_t at_ = 0;
 };
 
-ScriptCommand read_move(const std::string& word, Scanner& scan, const LinePlace& place) {
+ScriptCommand read_command(const std::string& word, Scanner& scan, const LinePlace& place) {
   using Kind = ScriptCommand::Kind;
   ScriptCommand command;
   command.line = place.line;
@@ -92,6 +92,12 @@ ScriptCommand read_move(const std::string& word, Scanner& scan, const LinePlace&
     command.seconds = scan.named("t");
     command.lookahead_s = scan.named("lookahead_time");
     command.gain = scan.named("gain");
+  } else if (word == "sleep") {
+    command.kind = Kind::Sleep;
+    command.seconds = scan.positive(word);
+  } else if (word == "stopj") {
+    command.kind = Kind::StopJ;
+    command.acceleration = scan.positive(word);
   } else {
     command.kind = word == "movel" ? Kind::MoveL : Kind::MoveP;
     scan.six("p[", six);
@@ -106,17 +112,6 @@ ScriptCommand read_move(const std::string& word, Scanner& scan, const LinePlace&
       if (command.blend_mm < 0.0) place.fail(fmt::format("r = {}", command.blend_mm), "a blend radius of 0 or more");
     }
   }
-  scan.expect(")");
-  scan.finish();
-  return command;
-}
-
-ScriptCommand read_rest(const std::string& word, Scanner& scan, const LinePlace& place) {
-  ScriptCommand command;
-  command.line = place.line;
-  command.kind = word == "sleep" ? ScriptCommand::Kind::Sleep : ScriptCommand::Kind::StopJ;
-  scan.expect("(");
-  (word == "sleep" ? command.seconds : command.acceleration) = scan.positive(word);
   scan.expect(")");
   scan.finish();
   return command;
@@ -194,10 +189,9 @@ class ScriptReader {
       scan.expect(")");
       scan.finish();
       program_.T_flange_tool = tool_pose(units::kMmPerM * pose.head<3>(), pose.tail<3>());
-    } else if (word == "movej" || word == "movel" || word == "movep" || word == "servoj") {
-      add(read_move(word, scan, place_));
-    } else if (word == "sleep" || word == "stopj") {
-      add(read_rest(word, scan, place_));
+    } else if (word == "movej" || word == "movel" || word == "movep" || word == "servoj" || word == "sleep" ||
+               word == "stopj") {
+      add(read_command(word, scan, place_));
     } else {
       place_.fail(fmt::format("'{:.60}'", word), "set_tcp, movej, movel, movep, servoj, sleep, stopj or end",
                   "Only programs that `incise export` wrote can be replayed.");

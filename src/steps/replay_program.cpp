@@ -13,10 +13,6 @@
 namespace incise::steps {
 namespace {
 
-bool is_in_cut(const ReplaySample& sample) {
-  return sample.phase == ProgramPhase::Cut || sample.phase == ProgramPhase::Overlap;
-}
-
 /// Copies what the program's own header says about its verdict.
 void add_header(const ProgramHeader& header, nlohmann::ordered_json& json) {
   for (const char* key : {"verdict", "reason", "accepted", "override", "not_checked"}) {
@@ -97,7 +93,7 @@ StepResult replay_program(const ReplayRequest& request, const StepContext& conte
 void write_replay_figure(const std::filesystem::path& folder, const Replay& replay) {
   ReplayPicture picture;
   for (const ReplaySample& s : replay.samples) {
-    if (!is_in_cut(s)) continue;
+    if (!is_cut(s.phase)) continue;
     picture.tip_mm.push_back(s.tip_mm);
     picture.time_s.push_back(s.time_s);
     picture.tip_speed_mm_s.push_back(s.tip_speed_mm_s);

@@ -39,6 +39,10 @@ struct Instrument {
   /// Whether the needle runs straight to the flange, without a shaft behind it.
   [[nodiscard]] bool is_needle_alone() const;
 };
+/// Returns the instrument that the checks assume.
+[[nodiscard]] inline Instrument instrument_of(const Mat4& T_flange_tool, const CheckSettings& limits) {
+  return {T_flange_tool, limits.needle_length_mm, limits.needle_radius_mm, limits.shaft_radius_mm};
+}
 
 using Hulls = std::array<Capsule, kHullCount>;
 /// Returns the hulls at joints `q`, base frame, mm. The base's column begins on the table, or at the base's foot if

@@ -30,6 +30,10 @@ inline constexpr std::array<std::string_view, 7> kProgramPhaseNames{"approach", 
 [[nodiscard]] constexpr Names names_of(ProgramPhase) {
   return kProgramPhaseNames;
 }
+/// Whether a phase belongs to the cut: it leads along the path, not through the air or along the axis.
+[[nodiscard]] constexpr bool is_cut(ProgramPhase phase) {
+  return phase == ProgramPhase::Cut || phase == ProgramPhase::Overlap;
+}
 
 /// Longest overlap, clearance, approach height or depth of a program, mm: the arm reaches no farther than 1300.
 inline constexpr double kLargestLengthMm = 1000.0;
