@@ -7,11 +7,12 @@ import {
   hasVoxels,
   isFresh,
   newBrush,
-  newCloud,
-  newFraming,
   newHistory,
   newPatch,
   newPhoto,
+  nothingFound,
+  nothingLaid,
+  nothingMeasured,
   setting,
 } from "./store.js";
 import {argumentsOf} from "./photo_settings.js";
@@ -106,14 +107,7 @@ export function takeCase(found, isOther) {
     brush: newBrush(),
     history: newHistory(),
     patch: newPatch(),
-    scan: null,
-    tissue: null,
-    body: null,
-    stretch: null,
-    plan: null,
-    room: null,
-    run: null,
-    moment: null,
+    ...nothingFound(),
     cross: null,
     edge: {...state.edge, points: [], curve: [], isClosed: false, selected: -1, isSaved: true, mode: "look"},
   });
@@ -125,24 +119,6 @@ export function takeCase(found, isOther) {
 function dropForeign() {
   const kept = state.kept.filter((one) => one.basis === basisOf(state.case));
   if (kept.length < state.kept.length) update({kept, keptDropped: state.kept.length - kept.length});
-}
-
-// Of the steps after the run: without a photograph, a registration and an arm.
-function nothingMeasured() {
-  return {
-    picture: null,
-    photograph: null,
-    photo: newPhoto(),
-    cloud: newCloud(),
-    framing: newFraming(),
-    frame: null,
-    register: null,
-    ...nothingLaid(),
-  };
-}
-
-function nothingLaid() {
-  return {lay: null, acceptLaid: [], mark: null, acceptMark: [], arm: null, armOf: "run"};
 }
 
 let scanning = null; // the scan on its way: it comes before the tissue, which may take long without a region box

@@ -3,7 +3,7 @@
 import {h} from "preact";
 import {useEffect, useReducer} from "preact/hooks";
 import {state} from "./store.js";
-import {Button, useId} from "./widgets.js";
+import {Button, Slider} from "./widgets.js";
 import {fixed, place, spoken} from "./words.js";
 
 const kSpeeds = [1, 5, 20];
@@ -174,22 +174,15 @@ export function Player() {
 }
 
 function Time({arm}) {
-  const id = useId("time");
-  return h(
-    "div",
-    {class: "slider"},
-    h("label", {for: id, class: "unseen"}, "Time, s"),
-    h("input", {
-      id,
-      type: "range",
-      min: 0,
-      max: arm.duration_s,
-      step: 0.05,
-      value: player.time,
-      "aria-valuetext": `${fixed(player.time, 1)} s, ${spoken(tipAt(arm, player.time).phase)}`,
-      onInput: (event) => seek(Number(event.target.value)),
-    }),
-  );
+  return h(Slider, {
+    label: "Time, s",
+    isUnseen: true,
+    max: arm.duration_s,
+    step: 0.05,
+    value: player.time,
+    said: `${fixed(player.time, 1)} s, ${spoken(tipAt(arm, player.time).phase)}`,
+    onInput: seek,
+  });
 }
 
 function Parts({arm}) {

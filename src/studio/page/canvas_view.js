@@ -74,6 +74,19 @@ export class CanvasView {
   }
 }
 
+/** Writes a word with a border, so that it is seen on any ground. */
+export function writeWord(pen, text, x, y, {colour, border, align = "center"}) {
+  pen.font = "600 12px system-ui, sans-serif";
+  pen.textAlign = align;
+  pen.textBaseline = "middle";
+  pen.lineWidth = 3;
+  pen.lineJoin = "round";
+  pen.strokeStyle = border;
+  pen.strokeText(text, x, y);
+  pen.fillStyle = colour;
+  pen.fillText(text, x, y);
+}
+
 /** Begins the path of a scale bar, a line with its ends turned up. */
 export function barPath(pen, left, right, bottom) {
   pen.beginPath();

@@ -4,7 +4,7 @@ import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
 import {state, update} from "./store.js";
 import {frameArguments, readFrame} from "./actions.js";
-import {AsOf, Button, Check, Choice, NumberInput, Problems} from "./widgets.js";
+import {AsOf, Button, Check, Choice, FactList, NumberInput, Problems} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {imageOf} from "./photo_view.js";
 import {Commands} from "./commands.js";
@@ -148,11 +148,7 @@ function Numbers({frame: {summary, points}}) {
     ...(summary.mark === "none" ? [] : ofMark),
     ["points", "Points of tissue", isNumber(points) ? whole(points) : "–"],
   ];
-  return h(
-    "dl",
-    {class: "facts"},
-    rows.map(([key, name, value]) => [h("dt", {key}, name), h("dd", {key: `${key}-value`, "data-found": key}, value)]),
-  );
+  return h(FactList, {rows, keyName: "data-found"});
 }
 
 function Picture({picture}) {

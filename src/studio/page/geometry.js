@@ -112,6 +112,11 @@ export function middleOf(grid) {
   );
 }
 
+/** The mean of points. */
+export function meanOf(points) {
+  return [0, 1, 2].map((k) => points.reduce((sum, point) => sum + point[k], 0) / points.length);
+}
+
 /** The number of a voxel at a point, or -1 outside the grid. */
 export function voxelAt(grid, point) {
   const from = minus(point, grid.origin_mm);

@@ -21,7 +21,7 @@ import {directionOf, pointsOf} from "./geometry.js";
 import {ink, intended, isDark, onBlack} from "./colours.js";
 import {cutLayer, kCutColour, kPaintedColour, paintedLayer, partsOf} from "./cut_faces.js";
 import {edgeAt} from "./stretched_edge.js";
-import {lookOfPlan} from "./planned_path.js";
+import {isRing, lookOfPlan} from "./planned_path.js";
 import {currentRoom, partsOfRing} from "./room.js";
 import {correctedOf, dashesOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {isFresh, setting} from "./store.js";
@@ -71,6 +71,10 @@ function curveLayer(name, label, colour, points, isClosed, parts, radius = kTube
 function ballLayer(name, label, colour, points, radius, parts) {
   if (!points.length) return null;
   return {name, label, colour, isArea: true, parts, build: () => balls(points, colour, radius)};
+}
+
+function dashedTubes(points, isClosed, dash, colour, radius) {
+  return dashesOf(points, isClosed, dash).flatMap((part) => tubes(part, false, colour, radius));
 }
 
 function edgeLayer(edge) {
@@ -251,7 +255,7 @@ function pastLayers(plan, label, colour, dash) {
       label,
       colour,
       parts: [plan, colour],
-      build: () => dashesOf(pointsOf(path), path.closed, pattern).flatMap((part) => tubes(part, false, colour, kTube)),
+      build: () => dashedTubes(pointsOf(path), path.closed, pattern, colour, kTube),
     },
     curveLayer("tumour", "tumour's edge of earlier settings", ink.tumour, pointsOf(edge), true, [plan, "past"]),
   ];
@@ -287,7 +291,7 @@ function toolLayer(moment) {
 function compared(state) {
   const {run, plan} = state;
   if (!run) return planned(state);
-  const isClosed = !(plan && plan.path) || plan.path.closed !== false;
+  const isClosed = isRing(plan);
   const line = (name, label, colour, cut) =>
     curveLayer(name, label, colour, cut && pointsOf(cut.centerline), isClosed, [run, isClosed], kWideTube);
   return [
@@ -307,17 +311,13 @@ function keptLayers(state, isClosed) {
     const {colour, dash} = lookOf(one),
       points = pointsOf((shownCut(one) || {}).centerline);
     if (points.length < 2) return null;
-    const parts = dashesOf(
-      points,
-      isClosed,
-      dash.map((length) => kDash * length),
-    );
+    const pattern = dash.map((length) => kDash * length);
     return {
       name: `kept${one.letter}`,
       label: titleOf(one),
       colour,
       parts: [one, state.keptCut, colour, isClosed],
-      build: () => parts.flatMap((part) => tubes(part, false, colour, kWideTube)),
+      build: () => dashedTubes(points, isClosed, pattern, colour, kWideTube),
     };
   });
 }
@@ -360,7 +360,7 @@ function markedLayer({frame}, view) {
     label: "edge marked on the tissue",
     colour,
     parts: [view, colour, isClosed],
-    build: () => dashesOf(view.marked, isClosed, [1.6, 0.8]).flatMap((part) => tubes(part, false, colour, kWideTube)),
+    build: () => dashedTubes(view.marked, isClosed, [1.6, 0.8], colour, kWideTube),
   };
 }
 
@@ -369,7 +369,7 @@ function played(state) {
   const {arm, plan, stretch, run} = state;
   if (!arm) return compared(state);
   const pose = arm.T_robot_sim,
-    isClosed = !(plan && plan.path) || plan.path.closed !== false;
+    isClosed = isRing(plan);
   const line = (name, label, colour, curve) =>
     curveLayer(
       name,
@@ -382,10 +382,8 @@ function played(state) {
   const skin = stretch && stretch.skin;
   return [
     skin && {
-      name: "tissue",
+      ...skinLayer(skin),
       label: "stretched tissue",
-      colour: ink.tissue,
-      isArea: true,
       parts: [skin, arm],
       build: () => placed([skinMesh(skin, {colour: ink.tissue, opacity: 1})], pose),
     },

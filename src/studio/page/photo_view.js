@@ -1,11 +1,10 @@
 // A photograph with the lines found on it, to be zoomed, moved and drawn on.
 
-import {CanvasView, barPath} from "./canvas_view.js";
+import {CanvasView, barPath, writeWord} from "./canvas_view.js";
 import {clamp, roundedDown} from "./geometry.js";
 import {onPhoto} from "./colours.js";
 import {tenths} from "./photo_settings.js";
 
-const kFont = "600 12px system-ui, sans-serif";
 const kReach = 13; // px of the screen: how near to a handle a pointer takes it
 const kTouchReach = 24;
 const kSmallMove = 5; // px: less is a click
@@ -166,15 +165,7 @@ export class PhotoView extends CanvasView {
   }
 
   word(pen, text, x, y, colour) {
-    pen.font = kFont;
-    pen.textAlign = "center";
-    pen.textBaseline = "middle";
-    pen.lineWidth = 3;
-    pen.lineJoin = "round";
-    pen.strokeStyle = onPhoto.border;
-    pen.strokeText(text, x, y);
-    pen.fillStyle = colour;
-    pen.fillText(text, x, y);
+    writeWord(pen, text, x, y, {colour, border: onPhoto.border});
   }
 
   // --- Mouse, touch and keyboard. ---

@@ -3,6 +3,11 @@
 import {isFresh} from "./store.js";
 import {intended, isDark} from "./colours.js";
 
+/** Whether the path of a plan is a ring, as it is where there is no plan yet. */
+export function isRing(plan) {
+  return !(plan && plan.path) || plan.path.closed !== false;
+}
+
 /** {isNow, label, colour, dash}; `dash`: px, empty for a whole line. */
 export function lookOfPlan() {
   if (isFresh("plan")) return {isNow: true, label: "planned path", colour: intended(), dash: []};

@@ -3,10 +3,10 @@
 import {h} from "preact";
 import {state, setting, isFresh} from "./store.js";
 import {change} from "./actions.js";
-import {kSelected, Button, Explained, NumberInput, Numbers, Section, complaint, problemAt} from "./widgets.js";
+import {kSelected, Button, Explained, NumberInput, PointInput, Section, complaint, problemAt} from "./widgets.js";
 import {ballAbout} from "./things.js";
 import {moved} from "./registered.js";
-import {pointsOf} from "./geometry.js";
+import {meanOf, pointsOf} from "./geometry.js";
 import {fixed, mm, plain} from "./words.js";
 
 const kPath = "robot.T_robot_sim";
@@ -88,10 +88,6 @@ function reference() {
   return {name: "Origin of the scan", point: [0, 0, 0]};
 }
 
-function meanOf(points) {
-  return [0, 1, 2].map((k) => points.reduce((sum, point) => sum + point[k], 0) / points.length);
-}
-
 // On the table; where the tissue cannot be stretched, as it lies at rest.
 function firstPose() {
   const pose = poseOf(0, reference().point, [...kInFront, 0]),
@@ -112,11 +108,8 @@ function Numbered({pose}) {
   return h(
     "div",
     {"data-place": "upright"},
-    h(Numbers, {
+    h(PointInput, {
       label: name,
-      unit: "mm",
-      names: ["x", "y", "z"],
-      step: 1,
       value: place.map((value) => Number(value.toFixed(2))),
       onChange: (next) => put(poseOf(turn, point, next)),
     }),

@@ -1,12 +1,11 @@
 // One of the three orthogonal slices: the picture, the tissue found, box, seed, tumour's edge and crosshair.
 
-import {CanvasView, barPath} from "./canvas_view.js";
+import {CanvasView, barPath, writeWord} from "./canvas_view.js";
 import {Plane, boxOutline, clamp, filled, letterOf, middleOf, minus, plus, roundedDown, voxelAt} from "./geometry.js";
 import {SliceImage, outlineOf, paintGrey, paintLabels} from "./slice_image.js";
 import {onBlack, rgbOf} from "./colours.js";
 import {place} from "./words.js";
 
-const kFont = "600 12px system-ui, sans-serif";
 const kReach = 12; // px: how near to a handle a pointer takes it
 const kTouchReach = 24;
 const kCut = 0.98; // of its radius: a ball of a stroke that a slice cuts farther out shows no more than a dot
@@ -337,7 +336,6 @@ export class SliceView extends CanvasView {
       width = this.host.clientWidth,
       height = this.host.clientHeight;
     const away = (vector) => letterOf(plus([0, 0, 0], vector, -1));
-    pen.font = kFont;
     this.word(pen, away(plane.right), 10, height / 2, "left");
     this.word(pen, letterOf(plane.right), width - 10, height / 2, "right");
     this.word(pen, away(plane.down), width / 2, 14, "center");
@@ -358,14 +356,7 @@ export class SliceView extends CanvasView {
   }
 
   word(pen, text, x, y, align) {
-    pen.textAlign = align;
-    pen.textBaseline = "middle";
-    pen.lineWidth = 3;
-    pen.lineJoin = "round";
-    pen.strokeStyle = "#000c";
-    pen.strokeText(text, x, y);
-    pen.fillStyle = onBlack.words;
-    pen.fillText(text, x, y);
+    writeWord(pen, text, x, y, {colour: onBlack.words, border: "#000c", align});
   }
 
   // --- Mouse, touch and keyboard. ---

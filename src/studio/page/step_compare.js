@@ -2,16 +2,16 @@
 
 import {h} from "preact";
 import {state, isFresh} from "./store.js";
-import {goTo, run} from "./actions.js";
+import {goTo} from "./actions.js";
 import {approach, showPlace} from "./views.js";
-import {isRunning} from "./step_run.js";
+import {NotRun} from "./step_run.js";
 import {Withdrawn, isCurrent} from "./programs.js";
 import {contourOf, correctedOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {KeptTable, WhatIf} from "./what_if.js";
-import {AsOf, Button, DataTable, Problems, Reasons, Section, Status} from "./widgets.js";
+import {AsOf, Button, DataTable, Reasons, Section, Status} from "./widgets.js";
 import {ContourView, boundsOf} from "./contour_view.js";
 import {Plot} from "./plots.js";
-import {lookOfPlan} from "./planned_path.js";
+import {isRing, lookOfPlan} from "./planned_path.js";
 import {ink, intended, isDark} from "./colours.js";
 import {countText, mm, spoken} from "./words.js";
 
@@ -25,14 +25,7 @@ const kNumbers = [
 /** The panel. */
 export function StepCompare() {
   const result = state.run;
-  if (!result)
-    return h(
-      "div",
-      null,
-      h("p", {class: "soft"}, "This case has not been run in this session. A result in the cache comes at once."),
-      h(Button, {isMain: true, disabled: isRunning(), onClick: run, "data-do": "run"}, "Run"),
-      h(Problems, {calls: ["run"]}),
-    );
+  if (!result) return h("div", null, h(NotRun));
   return h(
     "div",
     {"data-run": result.outcome},
@@ -131,10 +124,6 @@ function makePictures(run, plan) {
     errors: errorsOf(run, others),
     depths: depthsOf(run, others),
   };
-}
-
-function isRing(plan) {
-  return !(plan && plan.path) || plan.path.closed !== false;
 }
 
 /** The colour of what is corrected. */

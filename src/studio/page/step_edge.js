@@ -5,8 +5,19 @@ import {state, update, setting} from "./store.js";
 import {change, refresh, saveEdge} from "./actions.js";
 import {approach, dropEllipse, shownEdge, shownSkin, skinQuery, views} from "./views.js";
 import {currentRoom, hasRoom} from "./room.js";
-import {Button, Choice, Explained, NumberInput, Numbers, Problems, Section, StepLinks, Working} from "./widgets.js";
-import {pointsOf, length, minus} from "./geometry.js";
+import {
+  Button,
+  Choice,
+  Explained,
+  NumberInput,
+  Numbers,
+  PointInput,
+  Problems,
+  Section,
+  StepLinks,
+  Working,
+} from "./widgets.js";
+import {pointsOf, length, meanOf, minus} from "./geometry.js";
 import {ballAbout} from "./things.js";
 import {mm, place, plain} from "./words.js";
 
@@ -128,12 +139,9 @@ function Ellipse() {
       onChange: (next) => set({diameters: next}),
     }),
     h(NumberInput, {label: "Turn", unit: "deg", value: edge.turn || 0, step: 5, onChange: (turn) => set({turn})}),
-    h(Numbers, {
+    h(PointInput, {
       label: "Middle",
-      unit: "mm",
-      names: ["x", "y", "z"],
       value: centre ? centre.map((value) => Number(value.toFixed(1))) : null,
-      step: 1,
       onChange: (next) => set({centre: next}),
     }),
     h(Button, {disabled: !start, onClick: () => dropEllipse(start), "data-do": "drop"}, "Lay it on the skin here"),
@@ -147,8 +155,7 @@ function middleOfSkin() {
 
 function middleOfEdge() {
   const {points} = state.edge;
-  if (!points.length) return null;
-  return [0, 1, 2].map((k) => points.reduce((sum, point) => sum + point[k], 0) / points.length);
+  return points.length ? meanOf(points) : null;
 }
 
 function Points() {
@@ -169,10 +176,8 @@ function Points() {
       ),
     ),
     chosen
-      ? h(Numbers, {
+      ? h(PointInput, {
           label: `Point ${edge.selected + 1}`,
-          unit: "mm",
-          names: ["x", "y", "z"],
           value: chosen.map((value) => Number(value.toFixed(2))),
           step: 0.5,
           onChange: (point) => views.edge.put(edge.selected, point),

@@ -10,17 +10,17 @@ import {
   Choice,
   Explained,
   NumberInput,
-  Numbers,
+  PointInput,
   Problems,
   Section,
-  Setting,
+  Settings,
+  Slider,
   Steady,
   StepLinks,
   TextInput,
   Working,
   complaint,
   problemAt,
-  useId,
 } from "./widgets.js";
 import {
   kConstraints,
@@ -40,7 +40,6 @@ import {holds} from "./colours.js";
 import {fixed, isNumber, mm, plain, spoken, whole} from "./words.js";
 
 const kMostColoured = 8; // of the constraints: as many as the body's `held` has bits
-const kAxes = ["x", "y", "z"];
 
 // What a new one starts with; the numbers are there to be changed.
 const kNew = {
@@ -292,21 +291,17 @@ function Count({vertices}) {
 
 function Own({one, set}) {
   if (one.kind === "displaced") {
-    return h(Numbers, {
+    return h(PointInput, {
       label: "Displacement",
-      unit: "mm",
-      names: kAxes,
       value: one.displacement_mm,
-      step: 1,
       hint: "x to the patient's left, y to the back, z to the head: y −8 pulls 8 mm forwards.",
       onChange: (displacement_mm) => set({displacement_mm}),
     });
   }
   if (one.kind === "traction") {
-    return h(Numbers, {
+    return h(PointInput, {
       label: "Traction",
       unit: "kPa",
-      names: kAxes,
       value: one.traction_kpa,
       step: 0.1,
       onChange: (traction_kpa) => set({traction_kpa}),
@@ -322,12 +317,9 @@ function PlaneInputs({plane, onChange}) {
   return h(
     "div",
     null,
-    h(Numbers, {
+    h(PointInput, {
       label: "Point",
-      unit: "mm",
-      names: kAxes,
       value: plane.point_mm,
-      step: 1,
       onChange: (point_mm) => onChange({...plane, point_mm}),
     }),
     h(Direction, {label: "Normal", value: plane.normal, onChange: (normal) => onChange({...plane, normal})}),
@@ -346,7 +338,7 @@ function Direction({label, value, onChange}) {
       onChange: choose,
       options: [...kWords.map((word) => [word, directionText(word)]), ["other", "Three numbers"]],
     }),
-    isOther ? h(Numbers, {label: `${label}, x y z`, names: kAxes, value, step: 0.1, onChange}) : null,
+    isOther ? h(PointInput, {label: `${label}, x y z`, unit: "", value, step: 0.1, onChange}) : null,
   );
 }
 
@@ -400,13 +392,10 @@ function RegionInputs({kind, value, onChange}) {
       "div",
       null,
       ["Low corner", "High corner"].map((label, side) =>
-        h(Numbers, {
+        h(PointInput, {
           key: label,
           label,
-          unit: "mm",
-          names: kAxes,
           value: value[side],
-          step: 1,
           onChange: (corner) => onChange(value.with(side, corner)),
         }),
       ),
@@ -416,14 +405,7 @@ function RegionInputs({kind, value, onChange}) {
     return h(
       "div",
       null,
-      h(Numbers, {
-        label: "Centre",
-        unit: "mm",
-        names: kAxes,
-        value: value.center_mm,
-        step: 1,
-        onChange: (center_mm) => set({center_mm}),
-      }),
+      h(PointInput, {label: "Centre", value: value.center_mm, onChange: (center_mm) => set({center_mm})}),
       h(Length, {label: "Radius", value: value.radius_mm, onChange: (radius_mm) => set({radius_mm})}),
     );
   }
@@ -488,11 +470,7 @@ function Rows({title, group, about}) {
     {"data-group": group, open: keys.some((key) => problemAt(key)) || undefined},
     h("summary", null, title),
     h("p", {class: "soft"}, about),
-    h(
-      "div",
-      {class: "grid"},
-      keys.map((path) => h(Setting, {key: path, path})),
-    ),
+    h(Settings, {keys}),
   );
 }
 
@@ -528,8 +506,7 @@ export function Unstretched({stretch}) {
 }
 
 function Stretch() {
-  const {stretch, scrub, busy} = state,
-    id = useId("scrub");
+  const {stretch, scrub, busy} = state;
   const isStale = stretch && !isFresh("stretch");
   return h(
     Section,
@@ -545,21 +522,14 @@ function Stretch() {
       h(Working, {call: "stretch", text: "Stretching"}),
     ),
     stretch
-      ? h(
-          "div",
-          {class: "slider"},
-          h("label", {for: id}, "Rest to stretched"),
-          h("input", {
-            id,
-            type: "range",
-            min: 0,
-            max: 1,
-            step: 0.01,
-            value: scrub,
-            "aria-valuetext": `${Math.round(100 * scrub)} %`,
-            onInput: (event) => update({scrub: Number(event.target.value)}),
-          }),
-        )
+      ? h(Slider, {
+          label: "Rest to stretched",
+          max: 1,
+          step: 0.01,
+          value: scrub,
+          said: `${Math.round(100 * scrub)} %`,
+          onInput: (share) => update({scrub: share}),
+        })
       : null,
     stretch ? h("p", null, `Greatest displacement: ${mm(stretch.greatest_mm)}`) : null,
     isStale ? h("p", {class: "warning"}, "The settings have changed since this stretch.") : h(Unstretched, {stretch}),

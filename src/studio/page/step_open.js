@@ -7,6 +7,7 @@ import {ask, begin, goTo, list} from "./actions.js";
 import {
   Button,
   Choice,
+  FactList,
   NumberInput,
   Numbers,
   OddSize,
@@ -68,11 +69,7 @@ function OpenCase() {
     Section,
     {title: "Open case", id: "open-case"},
     h("p", {class: "path"}, state.case.title, h("br"), h("span", {class: "soft"}, state.case.file)),
-    h(
-      "dl",
-      {class: "facts"},
-      inputs.map(([key, name]) => [h("dt", null, kInputs[key] || key), h("dd", null, String(name))]),
-    ),
+    h(FactList, {rows: inputs.map(([key, name]) => [key, kInputs[key] || key, String(name)])}),
     h(Button, {onClick: () => goTo("see")}, "Go on with it"),
   );
 }

@@ -5,7 +5,7 @@ import {state, isFresh} from "./store.js";
 import {isAwaited} from "./actions.js";
 import {showPlace} from "./views.js";
 import {rowsOf} from "./fields.js";
-import {Problems, Reasons, Section, Setting, Status, Steady, problemAt} from "./widgets.js";
+import {Problems, Reasons, Section, Settings, Status, Steady, problemAt} from "./widgets.js";
 import {RobotPlace} from "./robot_place.js";
 import {Unstretched} from "./step_hold.js";
 import {pointsOf, length, minus} from "./geometry.js";
@@ -31,12 +31,17 @@ export function StepPlan() {
   return h(
     "div",
     null,
-    h(Section, {title: "Path", id: "plan"}, h(Rows, {keys: present(kPlan)}), h(More, {group: "plan", known: kPlan})),
+    h(
+      Section,
+      {title: "Path", id: "plan"},
+      h(Settings, {keys: present(kPlan)}),
+      h(More, {group: "plan", known: kPlan}),
+    ),
     h(Planned),
     h(
       Section,
       {title: "Simulated cut", id: "cut"},
-      h(Rows, {keys: present(kCut)}),
+      h(Settings, {keys: present(kCut)}),
       h(More, {group: "cut", known: kCut}),
       h(More, {group: "tool", known: [], title: "Tool"}),
       h(More, {group: "thermal", known: [], title: "Heat"}),
@@ -50,19 +55,11 @@ function present(keys) {
   return keys.filter((key) => all.includes(key));
 }
 
-function Rows({keys}) {
-  return h(
-    "div",
-    {class: "grid"},
-    keys.map((path) => h(Setting, {key: path, path})),
-  );
-}
-
 function More({group, known, title = "More settings"}) {
   const rest = rowsOf(group).filter((key) => !known.includes(key));
   if (!rest.length) return null;
   const open = rest.some((key) => problemAt(key)) || undefined;
-  return h("details", {"data-group": group, open}, h("summary", null, title), h(Rows, {keys: rest}));
+  return h("details", {"data-group": group, open}, h("summary", null, title), h(Settings, {keys: rest}));
 }
 
 /** What the settings give: the path, or why there is none. */

@@ -2,9 +2,9 @@
 
 import {h} from "preact";
 import {state, update} from "./store.js";
-import {ask, goTo, playProgram, programOf, run, runAccepting} from "./actions.js";
-import {isRunning} from "./step_run.js";
-import {Button, Choice, Problems, Section, Working} from "./widgets.js";
+import {ask, goTo, playProgram, programOf, runAccepting} from "./actions.js";
+import {NotRun, RunButton, isRunning} from "./step_run.js";
+import {Button, Choice, FactList, Problems, Section, Working} from "./widgets.js";
 import {Commands} from "./commands.js";
 import {Gate} from "./gate.js";
 import {LaidGate} from "./laid_gate.js";
@@ -22,14 +22,7 @@ const kPrograms = [
 /** The panel. */
 export function StepProgram() {
   const result = state.run;
-  if (!result)
-    return h(
-      "div",
-      {"data-arm": "none"},
-      h("p", {class: "soft"}, "This case has not been run in this session. A result in the cache comes at once."),
-      h(Button, {isMain: true, disabled: isRunning(), onClick: run, "data-do": "run"}, "Run"),
-      h(Problems, {calls: ["run"]}),
-    );
+  if (!result) return h("div", {"data-arm": "none"}, h(NotRun));
   const lines = commandsOf(state).filter(Boolean);
   return h(
     "div",
@@ -56,15 +49,9 @@ function Programs({result}) {
 }
 
 function OneProgram({of, result, title, note}) {
-  if (!isCurrent(of)) return h(Section, {title, id: "gate"}, h(Withdrawn, {of}), of === "run" ? h(Again) : null);
+  const again = of === "run" ? h(RunButton, {text: "Run again"}) : null;
+  if (!isCurrent(of)) return h(Section, {title, id: "gate"}, h(Withdrawn, {of}), again);
   return of === "run" ? h(RunGate, {result, title, note}) : h(LaidGate, {kind: of === "mark" ? of : "incise", title});
-}
-
-function Again() {
-  return [
-    h(Button, {key: "run", isMain: true, disabled: isRunning(), onClick: run, "data-do": "run"}, "Run again"),
-    h(Problems, {key: "problems", calls: ["run"]}),
-  ];
 }
 
 function Elsewhere() {
@@ -117,14 +104,13 @@ function Played({arm}) {
   return [
     h("p", {key: "outcome"}, `Outcome: ${spoken(arm.outcome).toLowerCase()}.`),
     arm.reason ? h("p", {key: "reason", class: "warning"}, arm.reason) : null,
-    h(
-      "dl",
-      {key: "facts", class: "facts"},
-      h("dt", null, "Duration"),
-      h("dd", null, duration(arm.duration_s)),
-      h("dt", null, "Greatest deviation of the tip"),
-      h("dd", null, mm(arm.max_deviation_mm)),
-    ),
+    h(FactList, {
+      key: "facts",
+      rows: [
+        ["duration", "Duration", duration(arm.duration_s)],
+        ["deviation", "Greatest deviation of the tip", mm(arm.max_deviation_mm)],
+      ],
+    }),
     h("p", {key: "about", class: "soft"}, "A simulation of the arm and its controller. No robot moves."),
   ];
 }

@@ -5,7 +5,19 @@ import {useEffect, useRef, useState} from "preact/hooks";
 import {state, update, isFresh} from "./store.js";
 import {chooseCloud, goTo, lay, makeCloud, refuseRegistration, register} from "./actions.js";
 import {Frame} from "./frame_panel.js";
-import {AsOf, Button, Choice, NumberInput, Numbers, Problems, Reasons, Section, Status, Working} from "./widgets.js";
+import {
+  AsOf,
+  Button,
+  Choice,
+  FactList,
+  NumberInput,
+  Numbers,
+  Problems,
+  Reasons,
+  Section,
+  Status,
+  Working,
+} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {LaidGate, laidOf} from "./laid_gate.js";
 import {Commands} from "./commands.js";
@@ -200,31 +212,23 @@ function Fit({registration: r}) {
     ["settled_max_mm", "Greatest settling", mm(r.settled_max_mm)],
     ["scale", "Scale", isNumber(r.scale) ? fixed(r.scale, 4) : "–"],
   ];
-  return h(
-    "dl",
-    {class: "facts"},
-    rows.map(([key, name, value]) => [h("dt", {key}, name), h("dd", {key: `${key}-value`, "data-fit": key}, value)]),
-  );
+  return h(FactList, {rows, keyName: "data-fit"});
 }
 
 /** How well the surfaces determine the pose. */
 function Observability({certificate: c}) {
   const rows = [
-    ["Position", mm(c.translation_sd_mm)],
-    ["Rotation", isNumber(c.rotation_sd_deg) ? `${fixed(c.rotation_sd_deg, 2)}°` : "–"],
-    ["Scale", percentFine(c.scale_sd)],
-    ["Weakest motion", mm(c.weakest_sd_mm)],
+    ["position", "Position", mm(c.translation_sd_mm)],
+    ["rotation", "Rotation", isNumber(c.rotation_sd_deg) ? `${fixed(c.rotation_sd_deg, 2)}°` : "–"],
+    ["scale", "Scale", percentFine(c.scale_sd)],
+    ["weakest", "Weakest motion", mm(c.weakest_sd_mm)],
   ];
   return h(
     "div",
     {"data-observability": "there"},
     h("h3", null, "Pose observability"),
     h("p", {class: "about"}, "Standard deviation of what the surfaces determine:"),
-    h(
-      "dl",
-      {class: "facts"},
-      rows.map(([name, value]) => [h("dt", {key: name}, name), h("dd", {key: `${name} value`}, value)]),
-    ),
+    h(FactList, {rows}),
     c.weakest_motion ? h("p", {class: "about"}, `The weakest motion is ${c.weakest_motion}.`) : null,
     h(Motions, {visible: c.visible || []}),
   );

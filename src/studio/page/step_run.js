@@ -44,6 +44,20 @@ export function StepRun() {
   );
 }
 
+/** A button that runs the case, with what went wrong. */
+export function RunButton({text}) {
+  return [
+    h(Button, {key: "run", isMain: true, disabled: isRunning(), onClick: run, "data-do": "run"}, text),
+    h(Problems, {key: "problems", calls: ["run"]}),
+  ];
+}
+
+/** In place of a result that is not there. */
+export function NotRun() {
+  const text = "This case has not been run in this session. A result in the cache comes at once.";
+  return [h("p", {key: "about", class: "soft"}, text), h(RunButton, {key: "run", text: "Run"})];
+}
+
 function progressOfRun() {
   return state.progress.run || state.running.find((job) => job.call === "run") || {};
 }

@@ -10,15 +10,15 @@ import {
   Button,
   Facts,
   NumberInput,
-  Numbers,
   OddSize,
+  PointInput,
   Problems,
   Reasons,
   Section,
   Setting,
+  Slider,
   Status,
   problemAt,
-  useId,
 } from "./widgets.js";
 import {boxAbout, putBox, regionBox, stepBox} from "./region_box.js";
 import {UndoButtons} from "./undo_buttons.js";
@@ -34,7 +34,6 @@ const kKeys = [
   "ct.smoothing_mm",
   "ct.edits",
 ];
-const kAxes = ["x", "y", "z"];
 
 /** The panel. */
 export function StepSee() {
@@ -103,12 +102,9 @@ function Picture() {
     hasScan ? h(Extent, {scan}) : null,
     hasScan ? h(Greys) : null,
     h(Overlay),
-    h(Numbers, {
+    h(PointInput, {
       label: "Crosshair",
-      unit: "mm",
-      names: kAxes,
       value: here && here.map((value) => Number(value.toFixed(1))),
-      step: 1,
       onChange: (point) => showPlace(point),
       hint: at >= 0 ? `${scan.voxels[at]} HU here` : scan ? "Outside the scan" : null,
       hintLines: hasScan ? 1 : 0,
@@ -171,22 +167,14 @@ function rangeOf(scan) {
 }
 
 function Overlay() {
-  const id = useId("overlay");
-  return h(
-    "div",
-    {class: "slider"},
-    h("label", {for: id}, "Tissue overlay"),
-    h("input", {
-      id,
-      type: "range",
-      min: 0,
-      max: 0.8,
-      step: 0.05,
-      value: state.overlay,
-      "aria-valuetext": `${Math.round(100 * state.overlay)} %`,
-      onInput: (event) => update({overlay: Number(event.target.value)}),
-    }),
-  );
+  return h(Slider, {
+    label: "Tissue overlay",
+    max: 0.8,
+    step: 0.05,
+    value: state.overlay,
+    said: `${Math.round(100 * state.overlay)} %`,
+    onInput: (overlay) => update({overlay}),
+  });
 }
 
 function Box() {
@@ -217,16 +205,8 @@ function Box() {
   return h(
     Section,
     {title: "Region box", id: "box"},
-    h(Numbers, {label: "Low corner", unit: "mm", names: kAxes, value: box[0], step: 1, onChange: put(0)}),
-    h(Numbers, {
-      label: "High corner",
-      unit: "mm",
-      names: kAxes,
-      value: box[1],
-      step: 1,
-      onChange: put(1),
-      problem: problemAt("ct.roi_box_mm"),
-    }),
+    h(PointInput, {label: "Low corner", value: box[0], onChange: put(0)}),
+    h(PointInput, {label: "High corner", value: box[1], onChange: put(1), problem: problemAt("ct.roi_box_mm")}),
     h(
       "div",
       {class: "row"},
@@ -245,12 +225,9 @@ function Seed() {
     Section,
     {title: "Seed", id: "seed"},
     seed
-      ? h(Numbers, {
+      ? h(PointInput, {
           label: "Point inside the tissue",
-          unit: "mm",
-          names: kAxes,
           value: seed,
-          step: 1,
           problem: problemAt("ct.seed_mm"),
           onChange: (point) => change({"ct.seed_mm": point}),
         })

@@ -56,6 +56,30 @@ export function newPatch() {
   return {k: -1, isEmpty: false, radius_mm: 5, stroke: [], refused: 0};
 }
 
+/** Of a case nothing is computed yet. */
+export function nothingFound() {
+  return {scan: null, tissue: null, body: null, stretch: null, plan: null, room: null, run: null, moment: null};
+}
+
+/** Of the steps after the run: without a photograph, a registration and an arm. */
+export function nothingMeasured() {
+  return {
+    picture: null,
+    photograph: null,
+    photo: newPhoto(),
+    cloud: newCloud(),
+    framing: newFraming(),
+    frame: null,
+    register: null,
+    ...nothingLaid(),
+  };
+}
+
+/** Nothing is laid on the cloud, and the arm plays nothing. */
+export function nothingLaid() {
+  return {lay: null, acceptLaid: [], mark: null, acceptMark: [], arm: null, armOf: "run"};
+}
+
 /** The state. `preview`: settings under the pointer, which are not sent before it lets go; `drafts`: settings on
  *  their way to the server; `refused`: settings that it refused; `problems`: the last problem of each call;
  *  `room`: how much margin fits round an edge, as room.js asks for it;
@@ -75,33 +99,14 @@ export const state = {
   running: [],
   progress: {},
   messages: [],
-  moment: null,
   files: null,
-  scan: null,
-  tissue: null,
-  body: null,
-  stretch: null,
-  plan: null,
-  room: null,
-  run: null,
+  ...nothingFound(),
   accept: [],
   kept: [],
   keptDropped: 0,
   keptCut: "corrected",
-  picture: null,
-  photograph: null,
-  photo: newPhoto(),
-  cloud: newCloud(),
-  framing: newFraming(),
-  frame: null,
-  register: null,
-  lay: null,
-  acceptLaid: [],
-  mark: null,
-  acceptMark: [],
+  ...nothingMeasured(),
   layKind: "incise",
-  arm: null,
-  armOf: "run",
   cross: null,
   window: {width: 400, level: 40},
   overlay: 0.35,

@@ -3,7 +3,7 @@
 import {h} from "preact";
 import {state, setting, update, isFresh} from "./store.js";
 import {dropKept, keepAndRun, putBack, run, stop} from "./actions.js";
-import {Button, Choice, Problems, Section, Setting, Status} from "./widgets.js";
+import {Button, Choice, Problems, Section, Settings, Status} from "./widgets.js";
 import {Swatch} from "./contour_view.js";
 import {shareOfPart, whereRunIs} from "./run_parts.js";
 import {isRunning} from "./step_run.js";
@@ -36,11 +36,7 @@ export function WhatIf() {
       "Change a value, keep the result, and run again: both are laid over each other. ",
       "What a change does not touch is not computed again.",
     ),
-    h(
-      "div",
-      {class: "grid"},
-      Object.entries(kSettings).map(([path, hint]) => h(Setting, {key: path, path, hint})),
-    ),
+    h(Settings, {keys: Object.keys(kSettings), hints: kSettings}),
     setting("specimen.material.from_mesh")
       ? h("p", {class: "soft"}, "Where the mesh brings Young's modulus or Poisson's ratio, those hold.")
       : null,

@@ -177,6 +177,31 @@ export function Numbers({label, names, unit, value, step, onChange, problem, hin
   );
 }
 
+/** Numbers along x, y and z: of a point, mm, if nothing else is said. */
+export function PointInput(about) {
+  return h(Numbers, {unit: "mm", names: ["x", "y", "z"], step: 1, ...about});
+}
+
+/** A slider from 0 on. @param said  its value in words   @param isUnseen  its label is for screen readers alone */
+export function Slider({label, isUnseen, max, step, value, said, onInput}) {
+  const id = useId("slider");
+  return h(
+    "div",
+    {class: "slider"},
+    h("label", {for: id, class: isUnseen ? "unseen" : undefined}, label),
+    h("input", {
+      id,
+      type: "range",
+      min: 0,
+      max,
+      step,
+      value,
+      "aria-valuetext": said,
+      onInput: (event) => onInput(Number(event.target.value)),
+    }),
+  );
+}
+
 // --- Settings of the case. ---
 
 /** The problem of the last change or call that concerns a setting, or null. */
@@ -217,6 +242,15 @@ export function Setting({path, step, names, hint}) {
       isOptional: Boolean(field.whenEmpty) || value === null,
     });
   return null;
+}
+
+/** Inputs for settings, side by side. @param hints  what is said of them, by their keys */
+export function Settings({keys, hints = {}}) {
+  return h(
+    "div",
+    {class: "grid"},
+    keys.map((path) => h(Setting, {key: path, path, hint: hints[path]})),
+  );
 }
 
 function isRow(value) {
@@ -361,14 +395,20 @@ function Target() {
 
 // --- Numbers that were found. ---
 
-/** Whatever a summary holds, as names and values. */
-export function Facts({facts}) {
-  const shown = Object.entries(facts).filter(([, value]) => value !== null && typeof value !== "object");
+/** Names and values. @param rows  [key, name, value]   @param keyName  the attribute that holds a row's key, if any */
+export function FactList({rows, keyName}) {
+  const marked = (key) => (keyName ? {[keyName]: key} : null);
   return h(
     "dl",
     {class: "facts"},
-    shown.map(([key, value]) => [h("dt", null, nameOf(key)), h("dd", null, factText(key, value))]),
+    rows.map(([key, name, value]) => [h("dt", {key}, name), h("dd", {key: `${key}-value`, ...marked(key)}, value)]),
   );
+}
+
+/** Whatever a summary holds, as names and values. */
+export function Facts({facts}) {
+  const shown = Object.entries(facts).filter(([, value]) => value !== null && typeof value !== "object");
+  return h(FactList, {rows: shown.map(([key, value]) => [key, nameOf(key), factText(key, value)])});
 }
 
 /** A table of numbers. @param head  the columns' names  @param rows  [key, name, ...numbers]: as many numbers are shown
