@@ -7,7 +7,7 @@ import {state, subscribe, update, isFresh} from "./store.js";
 import {goTo, sendAtOnce, takeEvent, takeState} from "./actions.js";
 import {connectViews, frameOn, makeView, views} from "./views.js";
 import {kViewNames} from "./scene.js";
-import {Button, Check, Status} from "./widgets.js";
+import {Button, Check, Status, softText} from "./widgets.js";
 import {StepOpen} from "./step_open.js";
 import {StepSee} from "./step_see.js";
 import {StepEdge} from "./step_edge.js";
@@ -197,7 +197,7 @@ function Views() {
           "div",
           {class: "empty"},
           h("p", null, "No case is open."),
-          h("p", {class: "soft"}, "Choose a scan or a case on the left, or make the demo specimen."),
+          softText("Choose a scan or a case on the left, or make the demo specimen."),
         )
       : null,
     [...kPlanes, "scene"].map((name) => h(View, {key: name, name})),

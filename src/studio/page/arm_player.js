@@ -3,7 +3,7 @@
 import {h} from "preact";
 import {useEffect, useReducer} from "preact/hooks";
 import {state} from "./store.js";
-import {Button, Slider} from "./widgets.js";
+import {Button, Slider, rowOf} from "./widgets.js";
 import {fixed, place, spoken} from "./words.js";
 
 const kSpeeds = [1, 5, 20];
@@ -134,9 +134,7 @@ export function Player() {
       "data-playing": String(player.isPlaying),
       "data-time": player.time.toFixed(3),
     },
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(
         Button,
         {isMain: true, onClick: player.isPlaying ? pause : play, "data-do": "play"},

@@ -17,7 +17,7 @@ import {
 } from "./brush.js";
 import {crosshair, showPlace} from "./views.js";
 import {UndoButtons} from "./undo_buttons.js";
-import {Button, NumberInput, Section, complaint, problemAt} from "./widgets.js";
+import {Button, NumberInput, Section, complaint, problemAt, rowOf, softText} from "./widgets.js";
 import {plain, whole} from "./words.js";
 
 const kModes = {"brush-add": "Add tissue", "brush-take": "Take tissue away"};
@@ -45,9 +45,7 @@ export function Brush() {
   return h(
     Section,
     {title: "Brush", id: "brush"},
-    h(
-      "p",
-      {class: "soft"},
+    softText(
       "For places that are found wrongly: a bridge to be cut, a gap to be filled. The strokes are kept in the case.",
     ),
     h(Modes),
@@ -62,9 +60,7 @@ export function Brush() {
 
 function Modes() {
   const choose = (mode) => update({placing: state.placing === mode ? null : mode});
-  return h(
-    "div",
-    {class: "row"},
+  return rowOf(
     Object.entries(kModes).map(([mode, text]) =>
       h(Button, {key: mode, isPressed: state.placing === mode, onClick: () => choose(mode), "data-do": mode}, text),
     ),
@@ -104,9 +100,7 @@ function Through() {
 function Ball() {
   const one = brush() || {tissue: true, radius_mm: state.brush.radius_mm},
     at = crosshair();
-  return h(
-    "div",
-    {class: "row"},
+  return rowOf(
     h(
       Button,
       {disabled: !at, onClick: () => addStroke(one, [at]), "data-do": "ball"},
@@ -172,7 +166,7 @@ function Strokes() {
           {class: "strokes", "aria-label": "Strokes, the last one first", "data-strokes": list.length},
           list.map((_, k) => h(Stroke, {key: k, k: list.length - 1 - k, list, onRemove: remove})),
         )
-      : h("p", {class: "soft"}, "There are no strokes."),
+      : softText("There are no strokes."),
   );
 }
 

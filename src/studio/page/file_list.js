@@ -4,7 +4,7 @@ import {h} from "preact";
 import {useEffect} from "preact/hooks";
 import {state} from "./store.js";
 import {list, listNearCase} from "./actions.js";
-import {Button, Choice, Problems, Working} from "./widgets.js";
+import {Button, Choice, Problems, Working, softText} from "./widgets.js";
 import {size, spoken} from "./words.js";
 
 const kSigns = {folder: "▸", scan: "▤", labels: "▦", mesh: "▲", surface: "△", case: "◆"};
@@ -40,8 +40,8 @@ export function FileList({actOf, isChosen, empty}) {
       {class: "files", "aria-label": `Files in ${folder.name}`},
       entries.map((file) => h(FileRow, {key: file.id, file, act: actOf(file), isChosen: isChosen && isChosen(file)})),
     ),
-    entries.length ? null : h("p", {class: "soft"}, empty),
-    files.left_out ? h("p", {class: "soft"}, `${files.left_out} more are not shown.`) : null,
+    entries.length ? null : softText(empty),
+    files.left_out ? softText(`${files.left_out} more are not shown.`) : null,
     h(Problems, {calls: ["files"]}),
   );
 }

@@ -4,7 +4,7 @@ import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
 import {state, update} from "./store.js";
 import {frameArguments, readFrame} from "./actions.js";
-import {AsOf, Button, Check, Choice, FactList, NumberInput, Problems} from "./widgets.js";
+import {AsOf, Button, Check, Choice, FactList, NumberInput, Problems, softText} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {imageOf} from "./photo_view.js";
 import {Commands} from "./commands.js";
@@ -128,7 +128,7 @@ function Found() {
       : null,
     (frame.warnings || []).map((text, k) => h("p", {key: k, class: "warning"}, text)),
     h(Numbers, {frame}),
-    h("p", {class: "soft"}, `The tissue in it, ${frame.name}, is the cloud to register.`),
+    softText(`The tissue in it, ${frame.name}, is the cloud to register.`),
     h(Commands, {lines: frame.commands, files: frame.files}),
   );
 }

@@ -3,7 +3,7 @@
 import {h} from "preact";
 import {state, setting} from "./store.js";
 import {change} from "./actions.js";
-import {Button, Section, complaint, problemAt} from "./widgets.js";
+import {Button, Section, complaint, problemAt, softText} from "./widgets.js";
 import {whole} from "./words.js";
 
 const kPath = "ct.label_values";
@@ -16,11 +16,7 @@ export function LabelValues() {
   return h(
     Section,
     {title: "Which labels are tissue", id: "labels"},
-    h(
-      "p",
-      {class: "soft"},
-      `${state.case.inputs["ct.labels"]} says what each voxel is. The labels that are checked are tissue.`,
-    ),
+    softText(`${state.case.inputs["ct.labels"]} says what each voxel is. The labels that are checked are tissue.`),
     found.length
       ? h(
           "ul",

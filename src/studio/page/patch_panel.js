@@ -6,7 +6,7 @@ import {state} from "./store.js";
 import {isAtRest, paintPatch, putPatch, togglePainting} from "./patch.js";
 import {kMostPoints} from "./brush.js";
 import {crosshair, skinQuery} from "./views.js";
-import {Button, NumberInput} from "./widgets.js";
+import {Button, NumberInput, rowOf, softText} from "./widgets.js";
 import {place, whole} from "./words.js";
 
 /** The inputs. @param k  number of the constraint   @param patch  {path_mm, radius_mm} */
@@ -15,9 +15,7 @@ export function Patch({k, patch}) {
   return h(
     "div",
     {"data-patch": patch.path_mm.length},
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(
         Button,
         {isPressed: isPainting, onClick: () => togglePainting(k), "data-do": "paint-patch"},
@@ -47,7 +45,7 @@ export function Patch({k, patch}) {
     h(Refused, {k}),
     patch.path_mm.length
       ? h(Points, {k, patch})
-      : h("p", {class: "soft"}, "There is no point yet. Until there is one, the case keeps the region that it had."),
+      : softText("There is no point yet. Until there is one, the case keeps the region that it had."),
   );
 }
 
@@ -56,15 +54,13 @@ function Hint() {
     ? "Drag over the skin; a drag beside it turns the view. A stroke goes on from the last point, so that a separate " +
       "place needs a constraint of its own. [ and ] change the radius, Esc ends painting."
     : "Patches are painted on the tissue at rest: move the slider below to rest.";
-  return h("p", {class: "soft"}, text);
+  return softText(text);
 }
 
 function AtCrosshair({k, patch}) {
   const at = crosshair(),
     query = skinQuery();
-  return h(
-    "div",
-    {class: "row"},
+  return rowOf(
     h(
       Button,
       {

@@ -2,7 +2,7 @@
 
 import {h} from "preact";
 import {state, update} from "./store.js";
-import {Button, Check, Numbers, Section} from "./widgets.js";
+import {Button, Check, Numbers, Section, rowOf, softText} from "./widgets.js";
 import {
   emptyLine,
   placeForHandle,
@@ -98,7 +98,7 @@ export function HandLines() {
   return h(
     Section,
     {title: "By hand", id: "by-hand"},
-    h("p", {class: "soft"}, "Correct a line where it was not found well. The result says that it was drawn by hand."),
+    softText("Correct a line where it was not found well. The result says that it was drawn by hand."),
     kLines.map(([name, title]) => h(Line, {key: name, name, title})),
   );
 }
@@ -113,9 +113,7 @@ function Line({name, title}) {
     "fieldset",
     {class: "hold", "data-line": name},
     h("legend", null, title, own ? h("span", {class: "soft"}, ` ${own.points.length} points`) : null),
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       own
         ? h(
             Button,
@@ -153,7 +151,7 @@ function Handles({line, name}) {
   return h(
     "div",
     null,
-    h("p", {class: "soft"}, kHints[line.isClosed ? "closed" : name]),
+    softText(kHints[line.isClosed ? "closed" : name]),
     h(Check, {label: "Closed", isOn: line.isClosed, onChange: close}),
     h(
       "ol",
@@ -172,9 +170,7 @@ function Handles({line, name}) {
           onChange: (point) => moveHandle(photo.selected, point),
         })
       : null,
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(
         Button,
         {onClick: () => addHandle(newPlace(line.points, photo.selected)), "data-do": "add-point"},

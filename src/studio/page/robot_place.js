@@ -3,7 +3,18 @@
 import {h} from "preact";
 import {state, setting, isFresh} from "./store.js";
 import {change} from "./actions.js";
-import {kSelected, Button, Explained, NumberInput, PointInput, Section, complaint, problemAt} from "./widgets.js";
+import {
+  kSelected,
+  Button,
+  Explained,
+  NumberInput,
+  PointInput,
+  Section,
+  complaint,
+  problemAt,
+  rowOf,
+  softText,
+} from "./widgets.js";
 import {ballAbout} from "./things.js";
 import {moved} from "./registered.js";
 import {meanOf, pointsOf} from "./geometry.js";
@@ -20,9 +31,7 @@ export function RobotPlace() {
   return h(
     Section,
     {title: "Place under the robot", id: "robot"},
-    h(
-      "p",
-      {class: "soft"},
+    softText(
       "Where the specimen lies, in the robot's coordinates: z is up, z = 0 the table, x and y from the middle of the " +
         "robot's base. Without it no program is written. Step Register finds it with a camera.",
     ),
@@ -30,9 +39,7 @@ export function RobotPlace() {
     problem ? h("p", {class: "problem", role: "alert"}, h(Explained, {text: complaint(problem)})) : null,
     pose ? h(Height, {pose}) : null,
     pose ? h(Matrix, {pose, problem}) : null,
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       pose
         ? h(Button, {onClick: () => change({[kPath]: null})}, "Remove")
         : h(
@@ -190,7 +197,7 @@ function Matrix({pose, problem}) {
     "details",
     {"data-matrix": "yes", open: turnOf(pose) === null || undefined},
     h("summary", null, "As a matrix"),
-    h("p", {class: "soft"}, "From the scan's coordinates to the robot's, by rows; the last column is in mm."),
+    softText("From the scan's coordinates to the robot's, by rows; the last column is in mm."),
     h(
       "table",
       {class: "matrix"},

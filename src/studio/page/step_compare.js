@@ -8,7 +8,7 @@ import {NotRun} from "./step_run.js";
 import {Withdrawn, isCurrent} from "./programs.js";
 import {contourOf, correctedOf, laidOver, lookOf, shownCut, titleOf} from "./kept.js";
 import {KeptTable, WhatIf} from "./what_if.js";
-import {AsOf, Button, DataTable, Reasons, Section, Status} from "./widgets.js";
+import {AsOf, Button, DataTable, Reasons, Section, Status, softText} from "./widgets.js";
 import {ContourView, boundsOf} from "./contour_view.js";
 import {Plot} from "./plots.js";
 import {isRing, lookOfPlan} from "./planned_path.js";
@@ -214,7 +214,7 @@ export function ComparePictures() {
           "figure",
           {class: "contours", key: "after"},
           h("figcaption", null, "Corrected"),
-          h("p", {class: "soft"}, run.corrected ? kSamePath : "There is no corrected cut."),
+          softText(run.corrected ? kSamePath : "There is no corrected cut."),
         ),
     errors.length
       ? h(Plot, {

@@ -16,6 +16,8 @@ import {
   Section,
   StepLinks,
   Working,
+  rowOf,
+  softText,
 } from "./widgets.js";
 import {pointsOf, length, meanOf, minus} from "./geometry.js";
 import {ballAbout} from "./things.js";
@@ -78,10 +80,8 @@ function Where() {
 function Stored() {
   const name = state.case.inputs && (state.case.inputs["tumor.contour"] || state.case.inputs.contour);
   const stored = pointsOf(state.case.edge);
-  if (!name) return h("p", {class: "soft"}, "The case has no tumour edge yet.");
-  return h(
-    "p",
-    {class: "soft"},
+  if (!name) return softText("The case has no tumour edge yet.");
+  return softText(
     `The case has an edge: ${name}, drawn on ${kWhere[setting("tumor.configuration")] || kWhere.stretched}.`,
     stored.length ? ` It has ${stored.length} points.` : "",
   );
@@ -95,9 +95,7 @@ function Draw() {
   return h(
     Section,
     {title: "Draw", id: "draw"},
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(Button, {...mode("draw"), "data-do": "draw"}, "Click points"),
       h(Button, {...mode("ellipse"), "data-do": "ellipse"}, "Drop an ellipse"),
       h(
@@ -199,14 +197,8 @@ function Keep() {
     {title: "Keep", id: "keep"},
     edge.isClosed
       ? h("p", null, `The edge is ${mm(around(edge.curve))} long, about ${middleOfEdge().map(place).join(", ")} mm.`)
-      : h(
-          "p",
-          {class: "soft"},
-          edge.points.length ? "An edge has to be closed before it can be stored." : "Nothing is drawn.",
-        ),
-    h(
-      "div",
-      {class: "row"},
+      : softText(edge.points.length ? "An edge has to be closed before it can be stored." : "Nothing is drawn."),
+    rowOf(
       h(
         Button,
         {
@@ -232,7 +224,7 @@ function Margin() {
   return h(
     Section,
     {title: "Margin", id: "room", doing: [["room", "Looking what fits"]]},
-    h("div", {role: "status", class: "lines-3"}, room ? h(Room, {room}) : h("p", {class: "soft"}, withoutRoom(edge))),
+    h("div", {role: "status", class: "lines-3"}, room ? h(Room, {room}) : softText(withoutRoom(edge))),
     h(Problems, {calls: ["room"]}),
   );
 }
@@ -276,7 +268,7 @@ function Room({room}) {
 // Why not even the least margin fits, in the library's words.
 function Why({room: {problem, greatest_margin_mm: greatest}}) {
   if (!problem || greatest !== null) return null;
-  return h("p", {class: "soft"}, "incise reports: ", h(Explained, {text: problem}), ".");
+  return softText("incise reports: ", h(Explained, {text: problem}), ".");
 }
 
 function fittingText({margin, margin_note: note}) {

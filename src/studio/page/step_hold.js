@@ -21,6 +21,8 @@ import {
   Working,
   complaint,
   problemAt,
+  rowOf,
+  softText,
 } from "./widgets.js";
 import {
   kConstraints,
@@ -70,9 +72,7 @@ export function StepHold() {
             list.map((one, k) => h("li", {key: k}, h(Constraint, {one, k}))),
           )
         : h(ByDefault),
-      h(
-        "div",
-        {class: "row"},
+      rowOf(
         Object.keys(kNew).map((kind) =>
           h(
             Button,
@@ -83,7 +83,7 @@ export function StepHold() {
       ),
       list ? h(Button, {onClick: backToDefault}, "Back to the default") : null,
       list && list.length > kMostColoured
-        ? h("p", {class: "soft"}, `The 3D view colours what the first ${kMostColoured} of them hold.`)
+        ? softText(`The 3D view colours what the first ${kMostColoured} of them hold.`)
         : null,
       h(
         Steady,
@@ -150,7 +150,7 @@ function ByDefault() {
   return h(
     "div",
     null,
-    h("p", {class: "soft"}, "The case says nothing about it, so the body is held by the default:"),
+    softText("The case says nothing about it, so the body is held by the default:"),
     h(
       "ul",
       {class: isNow ? "facts default" : "facts default stale", "data-default": found.length},
@@ -185,14 +185,8 @@ function DefaultWithoutBody() {
   return h(
     "div",
     {"data-default": "words"},
-    h(
-      "p",
-      {class: "soft"},
-      `The case says nothing about it, so the body would be held by the default.${isDefaultSaid() ? "" : said}`,
-    ),
-    h(
-      "p",
-      {class: "soft"},
+    softText(`The case says nothing about it, so the body would be held by the default.${isDefaultSaid() ? "" : said}`),
+    softText(
       isAboutConstraints(state.problems.body)
         ? "No body could be made with it. Add a clamp, a pull or a support of your own below: the first one replaces " +
             "the default, and each has its own lengths to change, a pull also its displacement."
@@ -227,9 +221,7 @@ function Share({found, isStale = false}) {
   return h(
     "div",
     {class: isStale ? "share stale" : "share", "data-share": share.toFixed(3)},
-    h(
-      "p",
-      {class: "soft"},
+    softText(
       `A pull of ${plain(Number(pull.toFixed(1)))} mm: ${fixed(100 * share, 0)} % of the body's length that way.`,
     ),
     note ? h("p", {class: "warning"}, note) : null,
@@ -309,7 +301,7 @@ function Own({one, set}) {
   }
   if (one.plane) return h(PlaneInputs, {plane: one.plane, onChange: (plane) => set({plane})});
   if (one.surface)
-    return h("p", {class: "soft"}, `Surface: ${typeof one.surface === "string" ? one.surface : one.surface.name}`);
+    return softText(`Surface: ${typeof one.surface === "string" ? one.surface : one.surface.name}`);
   return null;
 }
 
@@ -469,7 +461,7 @@ function Rows({title, group, about}) {
     "details",
     {"data-group": group, open: keys.some((key) => problemAt(key)) || undefined},
     h("summary", null, title),
-    h("p", {class: "soft"}, about),
+    softText(about),
     h(Settings, {keys}),
   );
 }
@@ -511,9 +503,7 @@ function Stretch() {
   return h(
     Section,
     {title: "Stretch", id: "stretch"},
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(
         Button,
         {isMain: !stretch || isStale, disabled: Boolean(busy.stretch), "data-do": "stretch", onClick: stretchAndLook},

@@ -16,6 +16,8 @@ import {
   TextInput,
   Working,
   problemAt,
+  rowOf,
+  softText,
 } from "./widgets.js";
 import {FileList} from "./file_list.js";
 import {fixed, plain} from "./words.js";
@@ -144,7 +146,7 @@ function NewCase({file}) {
           onChange: setAs,
         })
       : null,
-    h("p", {class: "soft"}, kBeginnings[as][1]),
+    softText(kBeginnings[as][1]),
     isFolder ? h(Inside, {file, setPictures}) : null,
     isReading ? h(Reading, {pictures, settings, setSettings}) : null,
     isFolder && pictures === null
@@ -179,9 +181,7 @@ function Inside({file, setPictures}) {
   useEffect(() => {
     ask("files", {folder: file.id}).then((found) => setPictures(found ? found.entries.filter(isPicture).length : 0));
   }, []);
-  return h(
-    "div",
-    {class: "row"},
+  return rowOf(
     h(Button, {onClick: () => list(file.id), "data-do": "look-inside"}, "Look into this folder"),
   );
 }
@@ -247,12 +247,10 @@ function Demo() {
   return h(
     Section,
     {title: "Demo specimen", id: "demo"},
-    h("p", {class: "soft"}, "A virtual tongue with a CT of its own. Another seed gives another shape."),
+    softText("A virtual tongue with a CT of its own. Another seed gives another shape."),
     h(NumberInput, {label: "Seed", value: seed, step: 1, min: 0, onChange: setSeed}),
     place.chosen ? h(MadeIn, {...place, name: `virtual_tongue_${seed}`}) : null,
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(
         Button,
         {

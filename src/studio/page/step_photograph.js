@@ -4,7 +4,20 @@ import {h} from "preact";
 import {useEffect, useRef} from "preact/hooks";
 import {state} from "./store.js";
 import {measure, openPicture} from "./actions.js";
-import {AsOf, Button, Choice, DataTable, NumberInput, Numbers, Problems, Reasons, Section, Status} from "./widgets.js";
+import {
+  AsOf,
+  Button,
+  Choice,
+  DataTable,
+  NumberInput,
+  Numbers,
+  Problems,
+  Reasons,
+  Section,
+  Status,
+  rowOf,
+  softText,
+} from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {Commands} from "./commands.js";
 import {
@@ -49,7 +62,7 @@ export function StepPhotograph() {
     h(
       Section,
       {title: "Photograph", id: "photo-file", doing: [["picture", "Reading the photograph"]]},
-      h("p", {class: "soft"}, "A top view of the cut: the tumour's edge in green, the incision in red."),
+      softText("A top view of the cut: the tumour's edge in green, the incision in red."),
       photo.file ? h("p", {class: "path"}, photo.file.name) : null,
       h(FilePicker, {label: "photograph", endings: kEndings, chosen: photo.file, onChoose: openPicture, id: "photo"}),
       h(Problems, {calls: ["picture"]}),
@@ -78,7 +91,7 @@ function Scale() {
       options: kScales.map(([how, label]) => [how, label]),
       onChange: (how) => setPhoto({scale: {...scale, how, points: []}, mode: "look", selected: -1}),
     }),
-    h("p", {class: "soft"}, hint),
+    softText(hint),
     h(ScaleNumbers, {scale}),
   );
 }
@@ -124,9 +137,7 @@ function ScalePoints() {
   return h(
     "div",
     {"data-scale-points": points.length},
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(
         Button,
         {
@@ -213,7 +224,7 @@ function Result() {
     }),
     byHand.length ? h("p", {class: "warning", "data-by-hand": byHand.join(" ")}, byHandText(byHand)) : null,
     h(Verdict, {evaluation, isDrawn: isAllDrawn(byHand)}),
-    h("p", {class: "soft"}, `${scaleText(photograph)} 12 o'clock is marked on the incision.`),
+    softText(`${scaleText(photograph)} 12 o'clock is marked on the incision.`),
     h(Measures, {evaluation}),
     h(ByClock, {evaluation}),
   );

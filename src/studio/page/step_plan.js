@@ -5,7 +5,7 @@ import {state, isFresh} from "./store.js";
 import {isAwaited} from "./actions.js";
 import {showPlace} from "./views.js";
 import {rowsOf} from "./fields.js";
-import {Problems, Reasons, Section, Settings, Status, Steady, problemAt} from "./widgets.js";
+import {Problems, Reasons, Section, Settings, Status, Steady, problemAt, softText} from "./widgets.js";
 import {RobotPlace} from "./robot_place.js";
 import {Unstretched} from "./step_hold.js";
 import {pointsOf, length, minus} from "./geometry.js";
@@ -74,7 +74,7 @@ function Planned() {
       {isWaiting: isComing()},
       h(Problems, {calls: ["change", "body", "stretch", ...(isUnstretched ? [] : ["plan"])], shown}),
       isUnstretched ? h(Unstretched, {stretch: state.stretch}) : null,
-      state.plan ? h(Result) : h("p", {class: "soft"}, "There is no path yet."),
+      state.plan ? h(Result) : softText("There is no path yet."),
     ),
   );
 }
@@ -92,7 +92,7 @@ function Result() {
   return h(
     "div",
     {class: isFresh("plan") ? null : "stale"},
-    h("p", {class: "soft"}, isFresh("plan") ? "For the current settings:" : "Path of earlier settings:"),
+    softText(isFresh("plan") ? "For the current settings:" : "Path of earlier settings:"),
     h("p", null, `${plan.path.closed ? "A ring" : "An open line"} of ${points.length} waypoints, ${mm(along)} long.`),
     plan.margin_note ? h("p", null, plan.margin_note) : null,
     h("p", {class: "verdict"}, h(Status, {status: plan.verdict.status}), ` ${countText(plan.verdict)}`),

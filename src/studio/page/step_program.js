@@ -4,7 +4,7 @@ import {h} from "preact";
 import {state, update} from "./store.js";
 import {ask, goTo, playProgram, programOf, runAccepting} from "./actions.js";
 import {NotRun, RunButton, isRunning} from "./step_run.js";
-import {Button, Choice, FactList, Problems, Section, Working} from "./widgets.js";
+import {Button, Choice, FactList, Problems, Section, Working, rowOf} from "./widgets.js";
 import {Commands} from "./commands.js";
 import {Gate} from "./gate.js";
 import {LaidGate} from "./laid_gate.js";
@@ -123,9 +123,7 @@ function Save({result}) {
   return h(
     Section,
     {title: "Report", id: "report"},
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(Button, {disabled: Boolean(state.busy.report), onClick: save, "data-do": "save-report"}, "Save the report"),
       h(Working, {call: "report", text: "Reading the report"}),
     ),

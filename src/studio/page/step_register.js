@@ -17,6 +17,8 @@ import {
   Section,
   Status,
   Working,
+  rowOf,
+  softText,
 } from "./widgets.js";
 import {FilePicker} from "./file_list.js";
 import {LaidGate, laidOf} from "./laid_gate.js";
@@ -81,7 +83,7 @@ function Cloud() {
     Section,
     {title: "What the camera sees", id: "cloud", doing: kDoing},
     h(Choice, {label: "Given as", value: cloud.from, options: kSources, onChange: (from) => setCloud({from})}),
-    h("p", {class: "soft"}, "The tissue on the table, stretched as it is simulated."),
+    softText("The tissue on the table, stretched as it is simulated."),
     cloud.from === "frame" ? h(Frame) : h(Points),
   );
 }
@@ -104,7 +106,7 @@ function Points() {
       "details",
       {key: "virtual"},
       h("summary", null, "Make a virtual cloud for practice"),
-      h("p", {class: "soft"}, "A cloud as a depth camera might give it of this case's stretched specimen, made up."),
+      softText("A cloud as a depth camera might give it of this case's stretched specimen, made up."),
       h(NumberInput, {label: "Seed", value: seed, step: 1, min: 0, onChange: setSeed}),
       h(
         Button,
@@ -144,9 +146,7 @@ function Settings() {
       hint: "How far the tissue may have settled since it was simulated. 0: the pose alone.",
       onChange: (settling_mm) => setCloud({settling_mm}),
     }),
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(
         Button,
         {isMain: true, disabled: Boolean(state.busy.register), onClick: register, "data-do": "register"},
@@ -179,7 +179,7 @@ function Result({found}) {
       {class: "reasons"},
       reasons.map((reason, k) => h("li", {key: k}, h("div", {class: "reason"}, reason))),
     ),
-    found.sample ? null : h("p", {class: "soft"}, "There is no pose, so the cloud is not shown."),
+    found.sample ? null : softText("There is no pose, so the cloud is not shown."),
     h(Fit, {registration}),
     h(Edges, {edges: found.edges}),
     registration.certificate ? h(Observability, {certificate: registration.certificate}) : null,
@@ -316,9 +316,7 @@ function Decision() {
     ),
     run
       ? null
-      : h(
-          "p",
-          {class: "soft"},
+      : softText(
           "There is no path to lay: the case has not been run in this session. ",
           h(Button, {onClick: () => goTo("run")}, "Go to the run"),
         ),

@@ -5,7 +5,7 @@ import {useEffect, useRef, useState} from "preact/hooks";
 import {state, isFresh} from "./store.js";
 import {goTo, run, stop} from "./actions.js";
 import {partsOfRun, shareOfPart, wordForPart} from "./run_parts.js";
-import {Button, Explained, Problems, Section} from "./widgets.js";
+import {Button, Explained, Problems, Section, rowOf, softText} from "./widgets.js";
 import {duration, isNumber, place, spoken} from "./words.js";
 
 const kQuiet = 5000; // ms between announcements
@@ -24,14 +24,8 @@ export function StepRun() {
     h(
       Section,
       {title: "Run", id: "run"},
-      h(
-        "p",
-        {class: "soft"},
-        "The path is cut as planned in the simulation, corrected, and cut again.",
-      ),
-      h(
-        "div",
-        {class: "row"},
+      softText("The path is cut as planned in the simulation, corrected, and cut again."),
+      rowOf(
         h(Button, {isMain: true, disabled: isOn, onClick: run, "data-do": "run"}, state.run ? "Run again" : "Run"),
         h(Button, {disabled: !isOn, onClick: () => stop("run"), "data-do": "stop"}, "Stop"),
       ),
@@ -179,6 +173,6 @@ function Messages() {
             ),
           ),
         )
-      : h("p", {class: "soft"}, "None yet."),
+      : softText("None yet."),
   );
 }

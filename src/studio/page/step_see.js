@@ -19,6 +19,8 @@ import {
   Slider,
   Status,
   problemAt,
+  rowOf,
+  softText,
 } from "./widgets.js";
 import {boxAbout, putBox, regionBox, stepBox} from "./region_box.js";
 import {UndoButtons} from "./undo_buttons.js";
@@ -73,9 +75,7 @@ function MeshOnly() {
   return h(
     Section,
     {title: "Body", id: "mesh", doing: [["body", "Reading the mesh"]]},
-    h(
-      "p",
-      {class: "soft"},
+    softText(
       "The case begins with a mesh: there are no slices, and no tissue has to be found. Step Hold sets how it is held.",
     ),
     h(Problems, {calls: ["body"]}),
@@ -184,14 +184,8 @@ function Box() {
     return h(
       Section,
       {title: "Region box", id: "box"},
-      h(
-        "p",
-        {class: "soft"},
-        "There is no box: the whole scan is searched. For a box, put the crosshair into the tissue first.",
-      ),
-      h(
-        "div",
-        {class: "row"},
+      softText("There is no box: the whole scan is searched. For a box, put the crosshair into the tissue first."),
+      rowOf(
         h(
           Button,
           {disabled: !scan, onClick: () => putBox(boxAbout(crosshair(), scan.grid)), "data-do": "box"},
@@ -207,9 +201,7 @@ function Box() {
     {title: "Region box", id: "box"},
     h(PointInput, {label: "Low corner", value: box[0], onChange: put(0)}),
     h(PointInput, {label: "High corner", value: box[1], onChange: put(1), problem: problemAt("ct.roi_box_mm")}),
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       h(Button, {onClick: () => fitBox(box)}, "Zoom to the box"),
       h(Button, {onClick: () => putBox(null)}, "Remove the box"),
       h(UndoButtons),
@@ -231,10 +223,8 @@ function Seed() {
           problem: problemAt("ct.seed_mm"),
           onChange: (point) => change({"ct.seed_mm": point}),
         })
-      : h("p", {class: "soft"}, "There is no seed: the largest piece is taken."),
-    h(
-      "div",
-      {class: "row"},
+      : softText("There is no seed: the largest piece is taken."),
+    rowOf(
       h(
         Button,
         {isPressed: isPlacing, onClick: () => update({placing: isPlacing ? null : "seed"}), "data-do": "place-seed"},
@@ -265,6 +255,6 @@ function Found() {
           h(Facts, {facts: tissue.summary}),
         )
       : null,
-    tissue || state.busy.tissue ? null : h("p", {class: "soft"}, "Nothing yet."),
+    tissue || state.busy.tissue ? null : softText("Nothing yet."),
   );
 }

@@ -3,7 +3,7 @@
 import {h} from "preact";
 import {state, setting, update, isFresh} from "./store.js";
 import {dropKept, keepAndRun, putBack, run, stop} from "./actions.js";
-import {Button, Choice, Problems, Section, Settings, Status} from "./widgets.js";
+import {Button, Choice, Problems, Section, Settings, Status, softText} from "./widgets.js";
 import {Swatch} from "./contour_view.js";
 import {shareOfPart, whereRunIs} from "./run_parts.js";
 import {isRunning} from "./step_run.js";
@@ -30,15 +30,13 @@ export function WhatIf() {
   return h(
     Section,
     {title: "What if", id: "what-if"},
-    h(
-      "p",
-      {class: "soft"},
+    softText(
       "Change a value, keep the result, and run again: both are laid over each other. ",
       "What a change does not touch is not computed again.",
     ),
     h(Settings, {keys: Object.keys(kSettings), hints: kSettings}),
     setting("specimen.material.from_mesh")
-      ? h("p", {class: "soft"}, "Where the mesh brings Young's modulus or Poisson's ratio, those hold.")
+      ? softText("Where the mesh brings Young's modulus or Poisson's ratio, those hold.")
       : null,
     h(Problems, {calls: ["change"], shown: Object.keys(kSettings)}),
     h(Buttons),

@@ -158,9 +158,7 @@ export function Numbers({label, names, unit, value, step, onChange, problem, hin
     "fieldset",
     {class: "numbers", "aria-describedby": id},
     h("legend", null, unit ? `${label}, ${unit}` : label),
-    h(
-      "div",
-      {class: "row"},
+    rowOf(
       names.map((name, k) =>
         h(NumberInput, {
           key: name,
@@ -200,6 +198,16 @@ export function Slider({label, isUnseen, max, step, value, said, onInput}) {
       onInput: (event) => onInput(Number(event.target.value)),
     }),
   );
+}
+
+/** A row of buttons and what belongs to them. */
+export function rowOf(...children) {
+  return h("div", {class: "row"}, ...children);
+}
+
+/** A faint paragraph. */
+export function softText(...children) {
+  return h("p", {class: "soft"}, ...children);
 }
 
 // --- Settings of the case. ---
