@@ -184,7 +184,6 @@ std::string score_heat_map_svg(const ScoreGrid& grid) {
   const double whole_width = kMapLeft + 2.0 * width + kMapGap + 24.0;
   SvgWriter svg(whole_width, kMapTop + height + 52.0, "Score by speed and dullness",
                 "Two heat maps: score in per cent of the photographed incisions, and mean signed error");
-  svg.rectangle({0.0, 0.0}, {whole_width, kMapTop + height + 52.0}, "fill=\"#fff\"");
   svg.text({0.5 * whole_width, 20.0}, "Simulated incisions by speed and dullness" + virtual_note(grid.is_virtual),
            "middle", "font-weight=\"600\" font-size=\"13\"");
   svg.text({kMapLeft - 8.0, kMapTop - 10.0}, "mm/s", "end");
@@ -220,7 +219,6 @@ std::string drag_fit_svg(const std::vector<ProfileCurves>& specimens, const std:
   const double height = 70.0 + rows * kRow + 0.7 * kPanelHeight + 50.0;
   SvgWriter svg(width, height, "Fit of the drag length",
                 "Photographed and fitted signed errors round the ring, and the posterior's marginals");
-  svg.rectangle({0.0, 0.0}, {width, height}, "fill=\"#fff\"");
   svg.text({0.5 * width, 20.0}, "Signed error of the inner edge, photographed and fitted" + virtual_note(is_virtual),
            "middle", "font-weight=\"600\" font-size=\"13\"");
   draw_fit_legend(svg, 40.0);

@@ -71,7 +71,7 @@ void draw_marks(SvgWriter& svg, const PlotArea& area, const CategorySeries& seri
 void draw_legend_of(SvgWriter& svg, const CategoryPanel& panel, const PlotArea& area) {
   Vec2 at = area.corner + Vec2(4.0, -14.0);
   for (std::size_t i = 0; i < panel.series.size(); ++i) {
-    svg.circle(at + Vec2(0.0, -4.0), 3.4, fmt::format("fill=\"{}\"", ink::kSeries[i % ink::kSeries.size()]));
+    svg.circle(at + Vec2(0.0, -4.0), 3.4, fmt::format("fill=\"{}\"", ink::of_series(i)));
     svg.text(at + Vec2(9.0, 0.0), panel.series[i].name);
     at.x() += 28.0 + kCharacterWidth * static_cast<double>(panel.series[i].name.size());
   }
@@ -88,7 +88,6 @@ std::string category_plot_svg(const CategoryPlot& plot) {
   const auto panels = static_cast<double>(plot.panels.size());
   const double width = left + panels * (kPanelWidth + kPanelGap);
   SvgWriter svg(width, kPanelTop + rows + kBelow, plot.title, "One mark for each category.");
-  svg.rectangle({0.0, 0.0}, {width, kPanelTop + rows + kBelow}, "fill=\"#fff\"");
   svg.text({0.5 * width, 22.0}, plot.title, "middle", "font-weight=\"600\" font-size=\"13\"");
   for (std::size_t k = 0; k < plot.categories.size(); ++k) {
     const double top = kPanelTop + kRow * static_cast<double>(k);
@@ -104,8 +103,7 @@ std::string category_plot_svg(const CategoryPlot& plot) {
     draw_x_axis(svg, area, round_ticks(area.x_low, area.x_high, 6), panel.label);
     const auto count = static_cast<double>(panel.series.size());
     for (std::size_t i = 0; i < panel.series.size(); ++i)
-      draw_marks(svg, area, panel.series[i], (static_cast<double>(i) - 0.5 * (count - 1.0)) * 6.0,
-                 ink::kSeries[i % ink::kSeries.size()]);
+      draw_marks(svg, area, panel.series[i], (static_cast<double>(i) - 0.5 * (count - 1.0)) * 6.0, ink::of_series(i));
     if (panel.series.size() > 1) draw_legend_of(svg, panel, area);
   }
   return svg.finish();

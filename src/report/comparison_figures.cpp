@@ -120,12 +120,9 @@ void draw_panel(SvgWriter& svg, const PlotArea& area, const std::vector<Box>& bo
   const double pitch = area.size.x() / static_cast<double>(boxes.size());
   const bool is_slanted = widest_name(boxes) > pitch;
   for (std::size_t k = 0; k < boxes.size(); ++k) {
-    std::vector<double> values = boxes[k].signed_error_mm;
-    if (!is_signed) {
-      for (double& value : values) value = std::abs(value);
-    }
     const double center = area.corner.x() + pitch * (static_cast<double>(k) + 0.5);
-    draw_box(svg, area, center, box_numbers(values), boxes[k].color, std::min(24.0, 0.36 * pitch));
+    draw_error_box(svg, area, center, boxes[k].signed_error_mm, is_signed, boxes[k].color,
+                   std::min(24.0, 0.36 * pitch));
     draw_name(svg, {center, area.corner.y() + area.size.y() + 17.0}, boxes[k].name, is_slanted);
   }
 }
@@ -179,7 +176,6 @@ std::string comparison_box_plot_svg(std::span<const ErrorSeries> series, const s
   const double height = 420.0 + (is_slanted ? 0.58 * name_px : 0.0);
   SvgWriter svg(width, height, "Distribution of the errors before and after",
                 "Box plots of the absolute and of the signed error; line: median, diamond: mean, box: quartiles.");
-  svg.rectangle({0.0, 0.0}, {width, height}, "fill=\"#fff\"");
   for (const bool is_signed : {false, true}) {
     const PlotArea area{.corner = {is_signed ? 150.0 + panel : 70.0, 36.0},
                         .size = {panel, 300.0},
@@ -206,7 +202,6 @@ std::string error_by_clock_svg(std::span<const ErrorSeries> series, const std::o
       .corner = {70.0, 50.0 + more}, .size = {670.0, 310.0}, .x_high = 12.0, .y_low = -limit, .y_high = limit};
   SvgWriter svg(760.0, 420.0 + more, "Signed error by clock position",
                 "The error of each point against where it lies on a clock face over the tumour.");
-  svg.rectangle({0.0, 0.0}, {760.0, 420.0 + more}, "fill=\"#fff\"");
   if (zones) draw_error_zones(svg, area, zones->positive_mm, zones->too_close_mm);
   draw_y_axis(svg, area, round_ticks(-limit, limit, 10), "signed error, mm");
   svg.line(area.at(0.0, 0.0), area.at(12.0, 0.0), "stroke=\"#555\" stroke-width=\"1.2\"");

@@ -212,7 +212,6 @@ std::string contour_figure_svg(const ReportIncision& incision, const FigureStyle
   const double limit_mm = error_limit_of(style, {&incision, 1});
   SvgWriter svg(kPictureWidth, kPictureHeight, fmt::format("{}: contours seen along the approach", incision.name),
                 description_of(incision));
-  svg.rectangle({0.0, 0.0}, {kPictureWidth, kPictureHeight}, "fill=\"#fff\"");
   svg.text({kEdge, 24.0}, incision.name, "start", "font-size=\"15\" font-weight=\"600\"");
   svg.text({kEdge, 42.0}, fmt::format("mean |error| {:.2f} mm", incision.mean_abs_error_mm), "start", kText);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace incise {
 
@@ -49,8 +50,12 @@ void draw_error_zone_names(SvgWriter& svg, const PlotArea& area, double reached_
                 });
 }
 
-void draw_box(SvgWriter& svg, const PlotArea& area, double center_px, const BoxNumbers& box, std::string_view color,
-              double half_px) {
+void draw_error_box(SvgWriter& svg, const PlotArea& area, double center_px, std::vector<double> signed_error_mm,
+                    bool is_signed, std::string_view color, double half_px) {
+  if (!is_signed) {
+    for (double& error : signed_error_mm) error = std::abs(error);
+  }
+  const BoxNumbers box = box_numbers(signed_error_mm);
   const std::string stroke = fmt::format("stroke=\"{}\" stroke-width=\"1.6\"", color);
   const auto at = [&](double dx, double value) { return Vec2(center_px + dx, area.y(value)); };
   svg.line(at(0.0, box.low_whisker), at(0.0, box.lower_quartile), stroke);

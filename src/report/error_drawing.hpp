@@ -15,8 +15,8 @@ void draw_error_zones(SvgWriter& svg, const PlotArea& area, double reached_mm, d
 void draw_error_zone_names(SvgWriter& svg, const PlotArea& area, double reached_mm, double close_mm,
                            const std::string& close_name);
 
-/// A box of a box plot, `2 * half_px` wide.
-void draw_box(SvgWriter& svg, const PlotArea& area, double center_px, const BoxNumbers& box, std::string_view color,
-              double half_px = 24.0);
+/// A box of a box plot of errors, with or without their signs, `2 * half_px` wide.
+void draw_error_box(SvgWriter& svg, const PlotArea& area, double center_px, std::vector<double> signed_error_mm,
+                    bool is_signed, std::string_view color, double half_px = 24.0);
 
 }  // namespace incise

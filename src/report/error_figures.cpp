@@ -65,7 +65,7 @@ void draw_zone_names(SvgWriter& svg, const PlotArea& area, const ReportIncision&
 void draw_series_legend(SvgWriter& svg, std::span<const ReportIncision> incisions, Vec2 at) {
   for (std::size_t k = 0; k < incisions.size(); ++k) {
     svg.line(at, at + Vec2(20.0, 0.0),
-             fmt::format("stroke=\"{}\" stroke-width=\"2.4\"{}", ink::kSeries[k % ink::kSeries.size()],
+             fmt::format("stroke=\"{}\" stroke-width=\"2.4\"{}", ink::of_series(k),
                          k == 0 ? " stroke-dasharray=\"5 3\"" : ""));
     svg.text(at + Vec2(26.0, 4.0), incisions[k].name);
     at.x() += 48.0 + 7.0 * static_cast<double>(incisions[k].name.size());
@@ -93,7 +93,6 @@ std::string error_by_angle_svg(std::span<const ReportIncision> incisions, const 
       .corner = {70.0, 44.0}, .size = {670.0, 250.0}, .x_high = longest, .y_low = -limit, .y_high = limit};
   SvgWriter svg(760.0, 350.0, "Signed error along the incision",
                 "The error of each point of the incision contour; positive is farther from the tumour than intended.");
-  svg.rectangle({0.0, 0.0}, {760.0, 350.0}, "fill=\"#fff\"");
   draw_series_legend(svg, incisions, {70.0, 22.0});
   draw_zones(svg, area, incisions.front());
   draw_y_axis(svg, area, round_ticks(-limit, limit, 8), "signed error, mm");
@@ -113,7 +112,7 @@ std::string error_by_angle_svg(std::span<const ReportIncision> incisions, const 
     for (const auto& [place, error] : curves[k]) line.push_back(area.at(place, error));
     svg.polyline(line, false,
                  fmt::format("fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-linejoin=\"round\"{}",
-                             ink::kSeries[k % ink::kSeries.size()], k == 0 ? " stroke-dasharray=\"5 3\"" : ""));
+                             ink::of_series(k), k == 0 ? " stroke-dasharray=\"5 3\"" : ""));
   }
   draw_zone_names(svg, area, incisions.front());
   return svg.finish();
@@ -152,7 +151,6 @@ std::string box_plot_svg(std::span<const ReportIncision> incisions, const Figure
   const double width = 80.0 + 2.0 * panel + 80.0;
   SvgWriter svg(width, 350.0, "Distribution of the error",
                 "Box plots of the signed and of the absolute error; line: median, diamond: mean, box: quartiles.");
-  svg.rectangle({0.0, 0.0}, {width, 350.0}, "fill=\"#fff\"");
   for (int side = 0; side < 2; ++side) {
     const bool is_signed = side == 0;
     const PlotArea area{.corner = {70.0 + side * (panel + 80.0), 44.0},
@@ -163,13 +161,9 @@ std::string box_plot_svg(std::span<const ReportIncision> incisions, const Figure
     draw_y_axis(svg, area, round_ticks(area.y_low, area.y_high, 8), is_signed ? "signed error, mm" : "|error|, mm");
     draw_x_axis(svg, area, {}, "");
     for (std::size_t k = 0; k < incisions.size(); ++k) {
-      std::vector<double> values = incisions[k].signed_error_mm;
-      if (!is_signed) {
-        for (double& value : values) value = std::abs(value);
-      }
       const double center =
           area.corner.x() + area.size.x() * (static_cast<double>(k) + 0.5) / static_cast<double>(incisions.size());
-      draw_box(svg, area, center, box_numbers(values), ink::kSeries[k % ink::kSeries.size()]);
+      draw_error_box(svg, area, center, incisions[k].signed_error_mm, is_signed, ink::of_series(k));
       svg.text({center, 314.0}, incisions[k].name, "middle");
     }
     if (is_signed) draw_zone_names(svg, area, incisions.front());
@@ -196,7 +190,6 @@ std::string histogram_svg(const ReportHistogram& histogram) {
   SvgWriter svg(560.0, 290.0, "Histogram of the " + histogram.quantity,
                 fmt::format("{} bins from {} to {} {}", histogram.counts.size(), number_text(histogram.low),
                             number_text(histogram.high), histogram.unit));
-  svg.rectangle({0.0, 0.0}, {560.0, 290.0}, "fill=\"#fff\"");
   draw_y_axis(svg, area, round_ticks(0.0, area.y_high, 5), "");
   svg.text({20.0, 125.0}, "count", "middle", "transform=\"rotate(-90 20 125)\"");
   const double bin = (histogram.high - histogram.low) / static_cast<double>(histogram.counts.size());

@@ -63,7 +63,6 @@ std::string frame_figure_svg(const ReportAnimation& animation, std::size_t frame
   SvgWriter svg(width_px, height, title,
                 fmt::format("Obliquely from above, without perspective; {}, {:.2f} s after the tool began to plunge.",
                             moment.phase.empty() ? "a moment of the cut" : moment.phase, moment.time_s));
-  svg.rectangle({0.0, 0.0}, {static_cast<double>(width_px), height}, "fill=\"#fff\"");
   svg.text({16.0, 26.0}, title, "start", "font-size=\"15\" font-weight=\"600\"");
   svg.image({0.0, kHeadPx}, {static_cast<double>(width_px), static_cast<double>(height_px)}, png_data_uri(picture));
   const double bar_px = kLongBarMm * px_per_mm;

@@ -9,6 +9,7 @@
 #include <incise/report/html_report.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <map>
 
@@ -78,10 +79,7 @@ std::string page_script() {
 
 void require_reportable(const ReportData& data) {
   const std::vector<std::string> problems = find_problems(data);
-  if (problems.empty()) return;
-  std::string list;
-  for (const std::string& problem : problems) list += "\n  " + problem;
-  INCISE_REQUIRE(problems.empty(), "these data cannot be reported:" + list);
+  INCISE_REQUIRE(problems.empty(), fmt::format("these data cannot be reported:\n  {}", fmt::join(problems, "\n  ")));
 }
 
 }  // namespace

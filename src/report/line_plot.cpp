@@ -143,15 +143,14 @@ std::vector<std::string> title_rows(const std::string& title) {
   return rows;
 }
 
-void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<Vec2>& places,
-                 const std::vector<std::string_view>& colors) {
+void draw_legend(SvgWriter& svg, const LinePlot& plot, const std::vector<Vec2>& places) {
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     const Vec2& at = places[i];
     if (plot.series[i].is_line) {
-      svg.line(at, at + Vec2(16.0, 0.0), fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", colors[i]));
+      svg.line(at, at + Vec2(16.0, 0.0), fmt::format("stroke=\"{}\" stroke-width=\"1.8\"", ink::of_series(i)));
     } else {
       svg.circle(at + Vec2(8.0, 0.0), kMarkRadius,
-                 fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.6\"", colors[i]));
+                 fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.6\"", ink::of_series(i)));
     }
     svg.text(at + Vec2(21.0, 4.0), plot.series[i].name);
   }
@@ -193,7 +192,6 @@ std::string line_plot_svg(const LinePlot& plot) {
   const double top = legend.back().y() + 16.0;  // of the axes; further legend rows above make the picture taller
   const double height = kPlotHeight + top - 58.0;
   SvgWriter svg(kPlotWidth, height, plot.title, fmt::format("{} against {}", plot.y_label, plot.x_label));
-  svg.rectangle({0.0, 0.0}, {kPlotWidth, height}, "fill=\"#fff\"");
   for (std::size_t i = 0; i < title.size(); ++i) {
     svg.text({0.5 * kPlotWidth, 20.0 + kTitleRow * static_cast<double>(i)}, title[i], "middle",
              "font-weight=\"600\" font-size=\"13\"");
@@ -201,10 +199,8 @@ std::string line_plot_svg(const LinePlot& plot) {
   const PlotArea area{{kLeft, top}, {kPlotWidth - kLeft - 20.0, kPlotHeight - 112.0}, x.low, x.high, y.low, y.high};
   draw_axis(svg, area, y, {}, plot.is_log_y, false, plot.y_label);
   draw_axis(svg, area, x, plot.is_log_x ? mark_ticks(plot) : std::vector<double>{}, plot.is_log_x, true, plot.x_label);
-  std::vector<std::string_view> colors;
-  for (std::size_t i = 0; i < plot.series.size(); ++i) colors.push_back(ink::kSeries[i % ink::kSeries.size()]);
-  for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(svg, area, plot, plot.series[i], colors[i]);
-  draw_legend(svg, plot, legend, colors);
+  for (std::size_t i = 0; i < plot.series.size(); ++i) draw_series(svg, area, plot, plot.series[i], ink::of_series(i));
+  draw_legend(svg, plot, legend);
   return svg.finish();
 }
 

@@ -95,7 +95,6 @@ std::string registration_figure_svg(const RegistrationFigure& figure) {
   SvgWriter svg(kViewWidth, kViewHeight, figure.title,
                 fmt::format("{} Target: {} points, source: {} points.", figure.subtitle, figure.target_mm.size(),
                             figure.moved_source_mm.size()));
-  svg.rectangle({0.0, 0.0}, {kViewWidth, kViewHeight}, "fill=\"#fff\"");
   svg.text({16.0, 26.0}, figure.title, "start", "font-size=\"15\" font-weight=\"600\"");
   svg.text({16.0, 44.0}, figure.subtitle, "start", "fill=\"#555\"");
   svg.text({16.0, 66.0}, "target", "start", fmt::format("font-size=\"12\" fill=\"{}\"", kTargetColor));

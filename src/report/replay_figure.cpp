@@ -99,9 +99,9 @@ void draw_curve(SvgWriter& svg, const Course& course, const std::vector<double>&
 
 std::string replay_figure_svg(const ReplayPicture& picture) {
   require_drawable(picture);
-  SvgWriter svg(kWidth, kHeight, "The program as the player ran it",
-                "The tip's path over the intended one, its speed over time and its deviation along the way, while it cuts.");
-  svg.rectangle({0.0, 0.0}, {kWidth, kHeight}, "fill=\"#fff\"");
+  SvgWriter svg(
+      kWidth, kHeight, "The program as the player ran it",
+      "The tip's path over the intended one, its speed over time and its deviation along the way, while it cuts.");
   draw_paths(svg, picture);
   draw_curve(svg, {"time, s", picture.time_s}, picture.tip_speed_mm_s, {420.0, 44.0}, 110.0, "tip speed, mm/s");
   if (picture.intended_mm.empty()) return svg.finish();

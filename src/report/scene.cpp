@@ -160,17 +160,9 @@ Json mesh_json(const TetMesh& mesh) {
 }
 
 std::string script_json(const Json& value) {
-  const std::string text = value.dump();
-  std::string result;
-  result.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      result += "\\u003c";
-    } else {
-      result += c;
-    }
-  }
-  return result;
+  std::string text = value.dump();
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return text;
 }
 
 }  // namespace incise

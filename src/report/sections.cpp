@@ -27,9 +27,8 @@ std::string missing(std::string_view what) {
   return fmt::format("<p class=\"missing\">{}</p>\n", escaped(what));
 }
 
-std::string figure(const std::string& content, std::string_view caption = "", std::string_view attributes = "") {
-  const std::string text = caption.empty() ? "" : "<figcaption>" + escaped(caption) + "</figcaption>";
-  return fmt::format("<figure {}>{}{}</figure>\n", attributes, content, text);
+std::string figure(const std::string& content) {
+  return "<figure >" + content + "</figure>\n";
 }
 
 std::string card(std::string_view label, std::string_view value, std::string_view unit) {

@@ -246,7 +246,8 @@ std::string slice_svg(const SlicePlane& plane, const Slice& slice) {
                 fmt::format("{} slice at {} = {} mm, {} by {} mm; orange: border of the segmented tissue; green: "
                             "tumour; blue: planned cut.",
                             plane.name, plane.axis_name, number_text(std::round(10.0 * slice.position_mm) / 10.0),
-                            number_text(std::round(w)), number_text(std::round(h))));
+                            number_text(std::round(w)), number_text(std::round(h))),
+                false);
   svg.image({0.0, 0.0}, {w, h}, slice.image_uri);
   svg.open_group(fmt::format("fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" stroke-width=\"{:.3f}\"",
                              0.6 * unit));

@@ -62,12 +62,14 @@ std::string hex_color(const Vec3& rgb) {
   return fmt::format("#{:02x}{:02x}{:02x}", byte(rgb.x()), byte(rgb.y()), byte(rgb.z()));
 }
 
-SvgWriter::SvgWriter(double width, double height, std::string_view title, std::string_view description) {
+SvgWriter::SvgWriter(double width, double height, std::string_view title, std::string_view description,
+                     bool has_ground) {
   text_ = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" "
       "aria-label=\"{2}\" font-family=\"system-ui, Helvetica, Arial, sans-serif\" font-size=\"12\" fill=\"#222\">\n"
       "<title>{2}</title>\n<desc>{3}</desc>\n",
       coordinate(width), coordinate(height), escaped(title), escaped(description));
+  if (has_ground) rectangle({0.0, 0.0}, {width, height}, "fill=\"#fff\"");
 }
 
 void SvgWriter::line(const Vec2& a, const Vec2& b, std::string_view style) {

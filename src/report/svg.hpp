@@ -25,8 +25,8 @@ namespace incise {
 /// as text, such as `stroke="#111" fill="none"`.
 class SvgWriter {
  public:
-  /// @param title, description  for screen readers; escaped here.
-  SvgWriter(double width, double height, std::string_view title, std::string_view description);
+  /// @param title, description  for screen readers; escaped here.  @param has_ground  whether the picture is white.
+  SvgWriter(double width, double height, std::string_view title, std::string_view description, bool has_ground = true);
 
   void line(const Vec2& a, const Vec2& b, std::string_view style);
   void polyline(std::span<const Vec2> points, bool is_closed, std::string_view style);

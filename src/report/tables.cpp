@@ -216,13 +216,7 @@ std::string free_table(const ReportTable& content) {
   }
   for (const auto& row : content.rows) {
     table.row();
-    for (const std::string& cell : row) {
-      if (reads_as_number(cell)) {
-        table.number(cell);
-      } else {
-        table.cell(cell);
-      }
-    }
+    for (const std::string& cell : row) table.raw(escaped(cell), reads_as_number(cell));
   }
   return "<h3>" + escaped(content.title) + "</h3>\n" + table.html();
 }
