@@ -37,11 +37,7 @@ export function Gate({result, accepted, onAccept, onAgain, again, call, isBusy, 
               onChange: (isOn) => tick(id, isOn),
             }),
           ),
-          h(
-            Button,
-            {disabled: isBusy || !isOther(accepted, gate), onClick: onAgain, "data-do": "accept"},
-            button,
-          ),
+          h(Button, {disabled: isBusy || !isOther(accepted, gate), onClick: onAgain, "data-do": "accept"}, button),
         )
       : null,
     h(Problems, {calls: [call]}),

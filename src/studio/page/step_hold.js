@@ -265,11 +265,7 @@ function Constraint({one, k}) {
           h(Explained, {text: complaint(problem)}),
         )
       : null,
-    h(
-      Button,
-      {onClick: remove, "aria-label": `Remove constraint ${k + 1}, ${one.kind}`},
-      "Remove",
-    ),
+    h(Button, {onClick: remove, "aria-label": `Remove constraint ${k + 1}, ${one.kind}`}, "Remove"),
   );
 }
 

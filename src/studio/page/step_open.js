@@ -181,9 +181,7 @@ function Inside({file, setPictures}) {
   useEffect(() => {
     ask("files", {folder: file.id}).then((found) => setPictures(found ? found.entries.filter(isPicture).length : 0));
   }, []);
-  return rowOf(
-    h(Button, {onClick: () => list(file.id), "data-do": "look-inside"}, "Look into this folder"),
-  );
+  return rowOf(h(Button, {onClick: () => list(file.id), "data-do": "look-inside"}, "Look into this folder"));
 }
 
 function isPicture({name}) {
