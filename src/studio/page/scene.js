@@ -4,6 +4,7 @@ import * as THREE from "three";
 import {MeshBVH} from "three-mesh-bvh";
 import {isDark} from "./colours.js";
 import {Gizmo} from "./gizmo.js";
+import {geometryOf} from "./things.js";
 import {Viewer} from "./viewer.js";
 
 /** The names of the views that a button turns to. */
@@ -182,10 +183,7 @@ export class Scene extends Viewer {
 export class SkinQuery {
   /** @param skin  {vertices: Float32Array, triangles: Uint32Array}, mm */
   constructor(skin) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(skin.vertices, 3));
-    geometry.setIndex(new THREE.BufferAttribute(skin.triangles, 1));
-    this.tree = new MeshBVH(geometry, {indirect: true});
+    this.tree = new MeshBVH(geometryOf(skin.vertices, {triangles: skin.triangles}), {indirect: true});
   }
 
   /** The first point on a ray, [x, y, z], or null. */

@@ -4,12 +4,18 @@ import * as THREE from "three";
 import {minus, plus, length, thinned} from "./geometry.js";
 import {holds, ink, kUnseen, scaleColour} from "./colours.js";
 
+/** A geometry of points, x y z in turn, with triangles and with colours, linear RGB of each point, if there are any. */
+export function geometryOf(points, {triangles, colours} = {}) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
+  if (triangles) geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
+  if (colours) geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  return geometry;
+}
+
 /** A skin. @param look  {colour, opacity, colours: Float32Array of linear RGB per vertex} */
 export function skinMesh(skin, look) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(skin.vertices, 3));
-  geometry.setIndex(new THREE.BufferAttribute(skin.triangles, 1));
-  if (look.colours) geometry.setAttribute("color", new THREE.BufferAttribute(look.colours, 3));
+  const geometry = geometryOf(skin.vertices, {triangles: skin.triangles, colours: look.colours});
   geometry.computeVertexNormals();
   const isClear = look.opacity < 1;
   const material = new THREE.MeshLambertMaterial({
@@ -102,17 +108,12 @@ export function balls(points, colour, radius) {
   );
 }
 
-/** Lines from a path's surface points down to the tool's tip. @param depth_mm  a number or one for each point */
+/** Lines from a path's surface points down to the tool's tip, with an axis and a depth for each point. */
 export function depthLines(points, axes, depth_mm, colour) {
-  const ends = points.flatMap((point, k) => {
-    const axis = Array.isArray(axes[0]) ? axes[k] : axes;
-    return [...point, ...plus(point, axis, Array.isArray(depth_mm) ? depth_mm[k] : depth_mm)];
-  });
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(ends), 3));
+  const ends = points.flatMap((point, k) => [...point, ...plus(point, axes[k], depth_mm[k])]);
   return [
     new THREE.LineSegments(
-      geometry,
+      geometryOf(new Float32Array(ends)),
       new THREE.LineBasicMaterial({color: colour, transparent: true, opacity: 0.4, depthTest: false}),
     ),
   ];
@@ -192,9 +193,6 @@ function discTexture() {
 
 /** Points of a cloud, as dots of so many pixels. @param look  {colour, size} or {colours: Float32Array, size} */
 export function cloudPoints(points, {colour, colours, size}) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-  if (colours) geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
   const material = new THREE.PointsMaterial({
     color: colours ? 0xffffff : colour,
     vertexColors: Boolean(colours),
@@ -203,7 +201,7 @@ export function cloudPoints(points, {colour, colours, size}) {
     map: discTexture(),
     alphaTest: 0.5,
   });
-  const dots = new THREE.Points(geometry, material);
+  const dots = new THREE.Points(geometryOf(points, {colours}), material);
   dots.frustumCulled = false;
   return dots;
 }
@@ -263,9 +261,7 @@ export function poseArm(groups, ends) {
 
 /** A line of which showTrace() shows the first part. @param points  Float32Array */
 export function trace(points, colour) {
-  const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(points, 3));
-  const line = new THREE.Line(geometry, new THREE.LineBasicMaterial({color: colour, depthTest: false}));
+  const line = new THREE.Line(geometryOf(points), new THREE.LineBasicMaterial({color: colour, depthTest: false}));
   line.renderOrder = 6;
   line.frustumCulled = false;
   return line;
