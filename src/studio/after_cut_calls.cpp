@@ -395,14 +395,17 @@ Json matrix_json(const Mat4& T) {
   return rows;
 }
 
-}  // namespace
-
-Json Calls::picture(const Json& arguments) {
-  const fs::path file = text_argument(arguments, "file");
+Json picture_json(BlobFolder& blobs, const std::string& slot, const fs::path& file) {
   const ColorPicture picture = decode_picture(read_text(file), file);
   return {{"width", picture.width},
           {"height", picture.height},
-          {"rgb", blobs_.put("picture.rgb", std::span<const std::uint8_t>(picture.rgb))}};
+          {"rgb", blobs.put(slot, std::span<const std::uint8_t>(picture.rgb))}};
+}
+
+}  // namespace
+
+Json Calls::picture(const Json& arguments) {
+  return picture_json(blobs_, "picture.rgb", text_argument(arguments, "file"));
 }
 
 Json Calls::photograph(const Json& arguments) {
@@ -506,11 +509,7 @@ Json Calls::frame(const Json& arguments) {
   }
   Json found = nullptr, marked = nullptr;
   if (request.mark) {
-    const fs::path drawn = request.output / "found.png";
-    const ColorPicture picture = decode_picture(read_text(drawn), drawn);
-    found = {{"width", picture.width},
-             {"height", picture.height},
-             {"rgb", blobs_.put("frame.rgb", std::span<const std::uint8_t>(picture.rgb))}};
+    found = picture_json(blobs_, "frame.rgb", request.output / "found.png");
     marked = points_json(read_contour(request.output / "contour.csv", summary.at("closed_loop").get<bool>()).points);
   }
   std::vector<std::string> words{"track", request.color.string()};
@@ -709,8 +708,7 @@ Json Calls::arm(const Json& arguments) {
   judge_audit(replay, audit_program(program));
   const ArmSetup setup = program.record ? program.record->setup : ArmSetup{};
   const CheckSettings limits = program.record ? program.record->limits : CheckSettings{};
-  const Instrument instrument{program.T_flange_tool, limits.needle_length_mm, limits.needle_radius_mm,
-                              limits.shaft_radius_mm};
+  const Instrument instrument = instrument_of(program.T_flange_tool, limits);
   const ArmFrames frames = frames_of(replay, setup.arm, instrument, setup.table_z_mm);
   Json hulls = Json::array();
   const Hulls of_arm = hulls_at(setup.arm, setup.near_rad, instrument, setup.table_z_mm);

@@ -1,7 +1,5 @@
 #include "arguments.hpp"
 
-#include <incise/core/verdict.hpp>
-
 #include <fmt/format.h>
 
 #include <array>
@@ -46,12 +44,6 @@ std::vector<Vec2> pixels_argument(const Json& arguments, const char* name) {
   for (const auto& p : argument<std::vector<std::array<double, 2>>>(arguments, name, "a list of [u, v]"))
     pixels.emplace_back(p[0], p[1]);
   return pixels;
-}
-
-std::vector<std::string> accepted_argument(const Json& arguments) {
-  const auto accepted = argument_or<std::vector<std::string>>(arguments, "accept", "a list of ids", {});
-  for (const std::string& id : accepted) static_cast<void>(verdict_rule(id));
-  return accepted;
 }
 
 }  // namespace incise::studio

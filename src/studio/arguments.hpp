@@ -51,7 +51,5 @@ E word_argument(const nlohmann::ordered_json& arguments, const char* name) {
 [[nodiscard]] Points points_argument(const nlohmann::ordered_json& arguments, const char* name);
 /// A list of [u, v]. @throws CaseError
 [[nodiscard]] std::vector<Vec2> pixels_argument(const nlohmann::ordered_json& arguments, const char* name);
-/// Ids of the cautions that a person accepts; left out: none. @throws CaseError, also for an id without a rule.
-[[nodiscard]] std::vector<std::string> accepted_argument(const nlohmann::ordered_json& arguments);
 
 }  // namespace incise::studio

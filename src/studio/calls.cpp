@@ -5,6 +5,7 @@
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/verdict.hpp>
 #include <incise/cutting/divided_mesh.hpp>
 #include <incise/geometry/iso_surface.hpp>
 #include <incise/imaging/scan_checks.hpp>
@@ -258,7 +259,8 @@ void remove_stale_laid(const CaseFile& file) {
 }
 
 std::vector<std::string> Calls::accepted_in(const Json& arguments) const {
-  std::vector<std::string> accepted = accepted_argument(arguments);
+  auto accepted = argument_or<std::vector<std::string>>(arguments, "accept", "a list of ids", {});
+  for (const std::string& id : accepted) static_cast<void>(verdict_rule(id));
   if (!accepted.empty() && text_argument(arguments, "revision") != case_revision(file_)) throw StaleRevision(file_);
   return accepted;
 }

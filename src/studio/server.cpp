@@ -26,6 +26,7 @@
 #include <cstdlib>
 #include <deque>
 #include <list>
+#include <optional>
 #include <set>
 
 namespace incise::studio {
@@ -206,26 +207,20 @@ class Server {
       boost::system::error_code failed;
       co_await http::async_read_header(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
       if (failed == http::error::end_of_stream || failed == beast::error::timeout) co_return;
+      std::optional<Response> refused;
       if (failed) {
-        Response answered = failed == http::error::body_limit ? too_large() : plain(400, "Malformed request.", false);
-        co_await send(stream, std::move(answered));
-        co_await drain(stream);
-        co_return;
+        refused = failed == http::error::body_limit ? too_large() : plain(400, "Malformed request.", false);
+      } else if (const auto refusal = refusal_of(info_of(parser.get()), token_)) {  // before its body is read
+        refused = plain(refusal->status, refusal->why, false);
+      } else {
+        co_await http::async_read(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
+        if (failed == http::error::body_limit) refused = too_large();
       }
-      if (const auto refusal = refusal_of(info_of(parser.get()), token_)) {  // before its body is read
-        Response answered = plain(refusal->status, refusal->why, false);
-        co_await send(stream, std::move(answered));
+      if (refused) {
+        co_await send(stream, std::move(*refused));
         co_await drain(stream);
-        co_return;
       }
-      co_await http::async_read(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failed));
-      if (failed == http::error::body_limit) {
-        Response answered = too_large();
-        co_await send(stream, std::move(answered));
-        co_await drain(stream);
-        co_return;
-      }
-      if (failed) co_return;
+      if (failed || refused) co_return;
       stream.expires_never();  // a run may take an hour
       const Request request = parser.release();
       is_kept = request.keep_alive();
