@@ -14,33 +14,22 @@ namespace {
 using ForecastJson = nlohmann::ordered_json;
 
 /// Returns one forecast, with or without simulation, and the spreads of its model.
-ForecastJson forecast_json(const RingForecaster& forecaster, const RingForecast& forecast) {
+ForecastJson forecast_json(const CalibratedBelief& belief, const RingCovariates& ring, bool with_simulation,
+                           Monitor& monitor) {
+  const RingForecaster forecaster(belief.rings, with_simulation);
+  warn_unless_converged(forecaster, monitor);
+  const RingForecast forecast = forecaster.forecast(ring);
+  if (with_simulation) require_usable_share(belief.file, forecast.simulated_share, monitor);
   ForecastJson json = to_json(forecast);
   json["converged"] = forecaster.is_converged();
   json["spreads"] = to_json(forecaster.spreads());
   json["hand_eye"] = to_json(forecaster.hand_eye());
-  return json;
-}
-
-ForecastJson without_simulation(const CalibratedBelief& belief, const RingCovariates& ring, Monitor& monitor) {
-  const RingForecaster forecaster(belief.rings, false);
-  warn_unless_converged(forecaster, monitor);
-  const RingForecast forecast = forecaster.forecast(ring);
-  ForecastJson json = forecast_json(forecaster, forecast);
   json["compensation"] = {{"method", "profile"}, {"photographed_mm", forecast.residual_mm}};
-  return json;
-}
-
-ForecastJson with_simulation(const CalibratedBelief& belief, const RingCovariates& ring, Monitor& monitor) {
-  const RingForecaster forecaster(belief.rings, true);
-  warn_unless_converged(forecaster, monitor);
-  const RingForecast forecast = forecaster.forecast(ring);
-  require_usable_share(belief.file, forecast.simulated_share, monitor);
-  ForecastJson json = forecast_json(forecaster, forecast);
-  json["compensation"] = {{"observable", "inner_edge"},
-                          {"bias_mm", tissue_scenarios(belief.samples, 0.0).front().bias_mm},
-                          {"simulated_share", forecast.simulated_share},
-                          {"residual_mm", forecast.residual_mm}};
+  if (with_simulation)
+    json["compensation"] = {{"observable", "inner_edge"},
+                            {"bias_mm", tissue_scenarios(belief.samples, 0.0).front().bias_mm},
+                            {"simulated_share", forecast.simulated_share},
+                            {"residual_mm", forecast.residual_mm}};
   return json;
 }
 
@@ -75,8 +64,8 @@ StepResult forecast_case(const CaseRequest& request, const std::filesystem::path
   json["calibrated"] = input.found.specimens.size();
   json["ring"] = to_json(ring);
   json["in_view_mm"] = photographed_in_view(input.belief.rings, ring.start_deg);
-  json["without_simulation"] = without_simulation(input.belief, ring, context.monitor);
-  json["with_simulation"] = with_simulation(input.belief, ring, context.monitor);
+  json["without_simulation"] = forecast_json(input.belief, ring, false, context.monitor);
+  json["with_simulation"] = forecast_json(input.belief, ring, true, context.monitor);
   const std::filesystem::path folder = run.folder.root() / "forecast";
   require_replaceable(folder);
   AtomicFolder target(folder);

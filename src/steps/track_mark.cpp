@@ -166,7 +166,11 @@ Tracked tracked(const Scene& scene, const TrackRequest& request) {
   return result;
 }
 
-void move_to_robot(Tracked& tracked, const Mat4& T_robot_camera) {
+/// Moves what was found to the robot's frame, if the request says where the camera is.
+void move_to_robot(Tracked& tracked, Scene& scene, const TrackRequest& request) {
+  if (request.camera.empty()) return;
+  const Mat4 T_robot_camera = rigid_transform_in(read_json(request.camera), "T_robot_camera", request.camera);
+  scene.inputs.push_back(request.camera);
   const Mat3 R = T_robot_camera.topLeftCorner<3, 3>();
   const Vec3 t = T_robot_camera.topRightCorner<3, 1>();
   for (Vec3& p : tracked.lifted.contour.points) p = R * p + t;
@@ -192,9 +196,9 @@ ToolPath planned(const Tracked& tracked, const TrackRequest& request, const std:
 }
 
 /// Says why the mark is not the requested one.
-std::string complaint_about(const MarkedLine& line, const ColorPicture& picture, const TrackRequest& request) {
+std::string complaint_about(const MarkedLine& line, const std::optional<Vec2>& end, const TrackRequest& request) {
   if (request.is_open) return "the mark is a closed ring, but an open line was requested";
-  if (const std::optional<Vec2> end = end_at_rim_px(line, picture.width, picture.height)) {
+  if (end) {
     return fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: whether it is closed is unknown", end->x(),
                        end->y());
   }
@@ -231,10 +235,7 @@ StepResult see_frame(Scene scene, const TrackRequest& request, const StepContext
   Tracked seen;
   seen.cloud = colored_cloud(scene);
   if (seen.cloud.vertices.empty()) throw DataError(scene.depth_name, "", "no pixel with depth", "some");
-  if (!request.camera.empty()) {
-    move_to_robot(seen, rigid_transform_in(read_json(request.camera), "T_robot_camera", request.camera));
-    scene.inputs.push_back(request.camera);
-  }
+  move_to_robot(seen, scene, request);
   require_replaceable(request.output);
   AtomicFolder target(request.output);
   write_ply(target.path() / "cloud.ply", seen.cloud, common_specimen_id(scene.inputs));
@@ -255,11 +256,9 @@ StepResult track_mark(const TrackRequest& request, const StepContext& context) {
   Scene scene = request.depth.empty() ? scene_from_ply(request) : scene_from_pictures(request);
   if (!request.mark) return see_frame(std::move(scene), request, context);
   Tracked found = tracked(scene, request);
-  if (!request.camera.empty()) {
-    move_to_robot(found, rigid_transform_in(read_json(request.camera), "T_robot_camera", request.camera));
-    scene.inputs.push_back(request.camera);
-  }
+  move_to_robot(found, scene, request);
   const bool is_wanted = found.line.is_closed != request.is_open;
+  const std::optional<Vec2> end = end_at_rim_px(found.line, scene.picture.width, scene.picture.height);
   std::optional<ToolPath> path;
   if (request.has_plan && is_wanted) path = planned(found, request, scene.depth_name);
 
@@ -282,7 +281,7 @@ StepResult track_mark(const TrackRequest& request, const StepContext& context) {
   json["width_px"] = found.line.width_px;
   json["max_gap_mm"] = found.line.longest_unseen_mm;
   json["gap_tolerance_mm"] = found.line.gap_tolerance_mm;
-  json["leaves_picture"] = end_at_rim_px(found.line, scene.picture.width, scene.picture.height).has_value();
+  json["leaves_picture"] = end.has_value();
   json["max_hole_mm"] = found.lifted.max_hole_mm;
   json["bridged_points"] = found.lifted.bridged_points;
   json["cloud_points"] = found.cloud.vertices.size();
@@ -303,8 +302,8 @@ StepResult track_mark(const TrackRequest& request, const StepContext& context) {
                  manifest_of(context.run, settings_json(request).dump(), scene.inputs, context.wall_s()));
   target.commit();
   if (!is_wanted) {
-    context.monitor.message(Severity::Warning, complaint_about(found.line, scene.picture, request));
-  } else if (const auto end = end_at_rim_px(found.line, scene.picture.width, scene.picture.height)) {
+    context.monitor.message(Severity::Warning, complaint_about(found.line, end, request));
+  } else if (end) {
     context.monitor.message(
         Severity::Warning,
         fmt::format("the mark leaves the picture at pixel {:.0f}, {:.0f}: it may be longer", end->x(), end->y()));
