@@ -16,34 +16,6 @@ namespace {
 constexpr double kDifferenceS = 1e-3;  // 1e-15 rad of rounding causes 1e-9 rad/s² in the second difference
 constexpr double kJumpRad = 0.2;       // in one period: 25 rad/s at 8 ms, ten times the speed of any joint
 
-/// Computes the joints at any time of a course, on one branch.
-class BranchFollower {
- public:
-  BranchFollower(const Course& course, const ToolFrame& frame, const ArmBranch& branch, const ArmSetup& setup)
-      : course_(course), frame_(frame), branch_(branch), setup_(setup), T_tool_flange_(setup.T_flange_tool.inverse()) {}
-
-  /// Nothing if the branch does not reach the pose; `outcome` then gives the reason.
-  std::optional<Joints> at(double time_s, const Joints& reference, InverseOutcome& outcome) const {
-    const CourseSample place = course_.at(time_s);
-    Mat4 T = Mat4::Identity();
-    T.topLeftCorner<3, 3>() = frame_.at(place.axis);
-    T.topRightCorner<3, 1>() = place.tip_mm;
-    const InverseResult inverse = inverse_kinematics(setup_.arm, T * T_tool_flange_, reference[5]);
-    outcome = inverse.outcome;
-    for (const InverseSolution& solution : inverse.solutions) {
-      if (solution.branch == branch_) return nearest_turns(solution.q_rad, reference);
-    }
-    return std::nullopt;
-  }
-
- private:
-  const Course& course_;
-  const ToolFrame& frame_;
-  ArmBranch branch_;
-  const ArmSetup& setup_;
-  Mat4 T_tool_flange_;
-};
-
 std::size_t pose_at(const RobotProgram& program, double time_s) {
   const auto after = std::upper_bound(program.poses.begin(), program.poses.end(), time_s,
                                       [](double time, const ProgramPose& pose) { return time < pose.time_s; });
@@ -83,15 +55,27 @@ JointMotion follow_branch(const Course& course, const ToolFrame& frame, const Br
     fail(choice.outcome, choice.failed_pose, std::string(to_string(choice.why)));
     return motion;
   }
-  const BranchFollower follower(course, frame, choice.branch, setup);
+  const Mat4 T_tool_flange = setup.T_flange_tool.inverse();
+  InverseOutcome outcome = InverseOutcome::Solved;  // why the branch does not reach the last pose
+  const auto joints_at = [&](double time_s, const Joints& reference) -> std::optional<Joints> {
+    const CourseSample place = course.at(time_s);
+    Mat4 T = Mat4::Identity();
+    T.topLeftCorner<3, 3>() = frame.at(place.axis);
+    T.topRightCorner<3, 1>() = place.tip_mm;
+    const InverseResult inverse = inverse_kinematics(setup.arm, T * T_tool_flange, reference[5]);
+    outcome = inverse.outcome;
+    for (const InverseSolution& solution : inverse.solutions) {
+      if (solution.branch == choice.branch) return nearest_turns(solution.q_rad, reference);
+    }
+    return std::nullopt;
+  };
   const auto count = static_cast<std::size_t>(std::ceil(course.duration_s() / setup.period_s - 1e-9));
   Joints last = choice.start_rad;
   for (std::size_t i = 0; i <= count; ++i) {
     const double time = setup.period_s * static_cast<double>(i);
-    InverseOutcome outcome = InverseOutcome::Solved;
-    const auto now = follower.at(time, last, outcome);
-    const auto before = now ? follower.at(time - kDifferenceS, *now, outcome) : now;
-    const auto after = before ? follower.at(time + kDifferenceS, *now, outcome) : before;
+    const auto now = joints_at(time, last);
+    const auto before = now ? joints_at(time - kDifferenceS, *now) : now;
+    const auto after = before ? joints_at(time + kDifferenceS, *now) : before;
     if (!after) {
       fail(MotionOutcome::Unreachable, pose_at(program, time), std::string(to_string(outcome)));
       return motion;

@@ -127,12 +127,6 @@ class Follower {
   std::size_t last_ = 0;
 };
 
-void end(Replay& replay, ReplayOutcome outcome, std::string reason, std::size_t line = 0) {
-  replay.outcome = outcome;
-  replay.reason = std::move(reason);
-  replay.line = line;
-}
-
 /// The greatest of some positive values, and its time.
 struct Peak {
   double value = 0.0, time_s = 0.0, limit = 0.0;
@@ -192,6 +186,12 @@ const ScriptCommand* hasty_command(const WrittenProgram& program) {
 
 }  // namespace
 
+void end_replay(Replay& replay, ReplayOutcome outcome, std::string reason, std::size_t line) {
+  replay.outcome = outcome;
+  replay.reason = std::move(reason);
+  replay.line = line;
+}
+
 void judge_own_course(Replay& replay, const WrittenProgram& program, const PlayerSettings& settings) {
   if (replay.outcome != ReplayOutcome::Completed || !program.path || !program.record) return;
   const OwnCourse course(program);
@@ -199,34 +199,35 @@ void judge_own_course(Replay& replay, const WrittenProgram& program, const Playe
   const double left_mm = std::max(conduct.first_arc_mm, course.length_mm() - conduct.last_arc_mm);
   const bool is_at_full_speed = settings.speed_slider == 1.0;  // a slowed arm has not arrived when its stream ends
   if (conduct.deviation_mm.value > settings.max_deviation_mm) {
-    end(replay, ReplayOutcome::OffCourse,
-        fmt::format("at {:.2f} s the tip is {:.2f} mm off the course in the header; at most {} mm are allowed",
-                    conduct.deviation_mm.time_s, conduct.deviation_mm.value, settings.max_deviation_mm));
+    end_replay(replay, ReplayOutcome::OffCourse,
+               fmt::format("at {:.2f} s the tip is {:.2f} mm off the course in the header; at most {} mm are allowed",
+                           conduct.deviation_mm.time_s, conduct.deviation_mm.value, settings.max_deviation_mm));
   } else if (conduct.lean_deg.value > settings.max_lean_deg) {
-    end(replay, ReplayOutcome::WrongAxis,
-        fmt::format("at {:.2f} s the tool leans {:.1f} degrees from its intended axis; at most {} are allowed",
-                    conduct.lean_deg.time_s, conduct.lean_deg.value, settings.max_lean_deg));
+    end_replay(replay, ReplayOutcome::WrongAxis,
+               fmt::format("at {:.2f} s the tool leans {:.1f} degrees from its intended axis; at most {} are allowed",
+                           conduct.lean_deg.time_s, conduct.lean_deg.value, settings.max_lean_deg));
   } else if (conduct.way_back_mm.value > settings.max_way_back_mm) {
-    end(replay, ReplayOutcome::WrongOrder,
-        fmt::format("at {:.2f} s the tip has gone back {:.2f} mm along its course", conduct.way_back_mm.time_s,
-                    conduct.way_back_mm.value));
+    end_replay(replay, ReplayOutcome::WrongOrder,
+               fmt::format("at {:.2f} s the tip has gone back {:.2f} mm along its course", conduct.way_back_mm.time_s,
+                           conduct.way_back_mm.value));
   } else if (is_at_full_speed && left_mm > settings.max_way_left_mm) {
-    end(replay, ReplayOutcome::WrongOrder,
-        fmt::format("the program leaves out {:.2f} mm of its course at the {}", left_mm,
-                    left_mm == conduct.first_arc_mm ? "beginning" : "end"));
+    end_replay(replay, ReplayOutcome::WrongOrder,
+               fmt::format("the program leaves out {:.2f} mm of its course at the {}", left_mm,
+                           left_mm == conduct.first_arc_mm ? "beginning" : "end"));
   } else if (conduct.too_fast.value > 0.0 || conduct.too_slow.value > 0.0) {
     const bool is_fast = conduct.too_fast.value > 0.0;
     const Peak& worst = is_fast ? conduct.too_fast : conduct.too_slow;
-    end(replay, ReplayOutcome::WrongSpeed,
+    end_replay(
+        replay, ReplayOutcome::WrongSpeed,
         fmt::format("at {:.2f} s the tip is {} than the intended {} mm/s, by {:.3g} mm/s more than the tolerance",
                     worst.time_s, is_fast ? "faster" : "slower", worst.limit, worst.value));
   } else if (const ScriptCommand* command = hasty_command(program)) {
-    end(replay, ReplayOutcome::WrongSpeed, "a move has more acceleration or speed than the program was made with",
-        command->line);
+    end_replay(replay, ReplayOutcome::WrongSpeed,
+               "a move has more acceleration or speed than the program was made with", command->line);
   } else if (is_at_full_speed && conduct.rest_s > program.record->settings.dwell_s + settings.max_rest_s) {
-    end(replay, ReplayOutcome::RestsInTissue,
-        fmt::format("the tip rests in the tissue for {:.2f} s; the intended rest is {} s", conduct.rest_s,
-                    program.record->settings.dwell_s));
+    end_replay(replay, ReplayOutcome::RestsInTissue,
+               fmt::format("the tip rests in the tissue for {:.2f} s; the intended rest is {} s", conduct.rest_s,
+                           program.record->settings.dwell_s));
   }
 }
 
@@ -275,7 +276,7 @@ void judge_limits(Replay& replay, const WrittenProgram& program, const ArmModel&
   }
   for (const Limit& limit : all) {
     if (limit.found >= limit.least || is_overridden(program.header, limit.name)) continue;
-    return end(
+    return end_replay(
         replay, ReplayOutcome::BreaksLimit,
         fmt::format("{}: {:.4g} at {:.2f} s, must be >= {:.4g}", limit.name, limit.found, limit.time_s, limit.least));
   }

@@ -4,6 +4,9 @@
 
 namespace incise::robot_detail {
 
+/// Ends a replay early or as a fault. @param line  of the program; 0: none
+void end_replay(Replay& replay, ReplayOutcome outcome, std::string reason = {}, std::size_t line = 0);
+
 /// Compares a completed replay with the course of the path and settings in its program's header, in all phases:
 /// position, axis, order, speed and rests. Sets the outcome to the first fault. Without path and settings in the
 /// header, it does nothing.

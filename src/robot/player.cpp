@@ -16,6 +16,7 @@
 namespace incise {
 namespace {
 
+using robot_detail::end_replay;
 using robot_detail::TipRoute;
 
 constexpr double kWithinRad = 1e-6;  // a table has ten digits
@@ -58,10 +59,10 @@ class Playing {
   void judge_speed() {
     constexpr double kRounding = 1e-6;
     if (replay_.outcome != ReplayOutcome::Completed || replay_.max_joint_speed_share <= 1.0 + kRounding) return;
-    end(ReplayOutcome::JointSpeed, fastest_line_);
-    replay_.reason =
-        fmt::format("{} would turn at {:.3g} times its speed limit",
-                    arm_.joint_names[static_cast<std::size_t>(fastest_joint_)], replay_.max_joint_speed_share);
+    end_replay(replay_, ReplayOutcome::JointSpeed,
+               fmt::format("{} would turn at {:.3g} times its speed limit",
+                           arm_.joint_names[static_cast<std::size_t>(fastest_joint_)], replay_.max_joint_speed_share),
+               fastest_line_);
   }
 
  private:
@@ -97,27 +98,24 @@ class Playing {
   /// @returns whether `duration_s` still fits into kLongestProgramS; if not, the replay ends
   bool has_time_for(double duration_s, std::size_t line) {
     if (time_ + duration_s <= kLongestProgramS) return true;
-    end(ReplayOutcome::TooLong, line);
-    replay_.reason = fmt::format("the program takes {:.4g} s or more; at most {} s are played", time_ + duration_s,
-                                 kLongestProgramS);
+    end_replay(replay_, ReplayOutcome::TooLong,
+               fmt::format("the program takes {:.4g} s or more; at most {} s are played", time_ + duration_s,
+                           kLongestProgramS),
+               line);
     return false;
   }
 
   bool is_within_limits(std::size_t line) {
     for (int i = 0; i < 6; ++i) {
       if (q_[i] >= arm_.min_rad[i] - kWithinRad && q_[i] <= arm_.max_rad[i] + kWithinRad) continue;
-      end(ReplayOutcome::JointLimits, line);
-      replay_.reason = fmt::format("{} at {:.1f} degrees, outside its limits of {:.0f} to {:.0f}",
-                                   arm_.joint_names[static_cast<std::size_t>(i)], units::deg_from_rad(q_[i]),
-                                   units::deg_from_rad(arm_.min_rad[i]), units::deg_from_rad(arm_.max_rad[i]));
+      end_replay(replay_, ReplayOutcome::JointLimits,
+                 fmt::format("{} at {:.1f} degrees, outside its limits of {:.0f} to {:.0f}",
+                             arm_.joint_names[static_cast<std::size_t>(i)], units::deg_from_rad(q_[i]),
+                             units::deg_from_rad(arm_.min_rad[i]), units::deg_from_rad(arm_.max_rad[i])),
+                 line);
       return false;
     }
     return true;
-  }
-
-  void end(ReplayOutcome outcome, std::size_t line) {
-    replay_.outcome = outcome;
-    replay_.line = line;
   }
 
   /// Plays moves up to the next stop. @returns the index of the command after it
@@ -131,7 +129,7 @@ class Playing {
     const TipRoute way(here.topRightCorner<3, 1>(), here.topLeftCorner<3, 3>(),
                        std::span(commands).subspan(first, last + 1 - first), settings_.speed_slider);
     if (way.do_blends_overlap()) {
-      end(ReplayOutcome::BlendsOverlap, way.overlap_line());
+      end_replay(replay_, ReplayOutcome::BlendsOverlap, {}, way.overlap_line());
       return commands.size();
     }
     if (!has_time_for(way.duration_s(), commands[first].line)) return commands.size();
@@ -163,7 +161,7 @@ class Playing {
       found = q;
     }
     if (inverse.solutions.empty() || nearest > kJumpRad) {
-      end(inverse.solutions.empty() ? ReplayOutcome::Unreachable : ReplayOutcome::Jump, line);
+      end_replay(replay_, inverse.solutions.empty() ? ReplayOutcome::Unreachable : ReplayOutcome::Jump, {}, line);
       return false;
     }
     q_ = found;

@@ -29,49 +29,31 @@ Vec3 rotation_vector_near(const Mat3& rotation, const Vec3& previous) {
   return (vector - previous).norm() <= (other - previous).norm() ? vector : other;
 }
 
-/// Appends the poses of a course.
-class PoseWriter {
- public:
-  PoseWriter(RobotProgram& program, const Course& course, const ToolFrame& frame)
-      : program_(program), course_(course), frame_(frame) {}
+/// Adds a pose; phase and speed are those of the move to it.
+void add_pose(RobotProgram& program, const ToolFrame& frame, double time_s, const TipSample& place, ProgramPhase phase,
+              double speed_mm_s) {
+  const Mat3 R = frame.at(place.axis);
+  const Vec3 before = program.poses.empty() ? Vec3::Zero() : program.poses.back().rotation_vector;
+  program.poses.push_back(
+      {place.tip_mm, R, rotation_vector_near(R, before), time_s, speed_mm_s, place.depth_mm, phase, place.waypoint});
+}
 
-  /// Adds a pose; phase and speed are those of the move to it.
-  void add(double time_s, const TipSample& place, ProgramPhase phase, double speed_mm_s) {
-    ProgramPose pose;
-    pose.tip_mm = place.tip_mm;
-    pose.R_robot_tool = frame_.at(place.axis);
-    pose.rotation_vector = rotation_vector_near(
-        pose.R_robot_tool, program_.poses.empty() ? Vec3::Zero() : program_.poses.back().rotation_vector);
-    pose.time_s = time_s;
-    pose.tip_speed_mm_s = speed_mm_s;
-    pose.depth_mm = place.depth_mm;
-    pose.phase = phase;
-    pose.waypoint = place.waypoint;
-    program_.poses.push_back(pose);
-  }
-
-  /// Adds poses evenly along the cut and, separately, along the overlap.
-  void add_cut(const Leg& leg, std::size_t moves) {
-    const double length = course_.curve().length_mm();
-    double begin = 0.0;
-    const auto along = [&](double arc, ProgramPhase phase) {
-      add(leg.begin_s + leg.law.time_s(arc), course_.curve().at(arc), phase, course_.curve().at(begin).speed_mm_s);
-      begin = arc;
-    };
-    for (std::size_t i = 1; i <= moves; ++i)
-      along(i == moves ? length : program_.spacing_mm * static_cast<double>(i), ProgramPhase::Cut);
-    const double overlap = course_.overlap_mm();
-    const auto overlap_moves = static_cast<std::size_t>(std::ceil(overlap / program_.spacing_mm));
-    for (std::size_t i = 1; i <= overlap_moves; ++i) {
-      along(length + overlap * static_cast<double>(i) / static_cast<double>(overlap_moves), ProgramPhase::Overlap);
-    }
-  }
-
- private:
-  RobotProgram& program_;
-  const Course& course_;
-  const ToolFrame& frame_;
-};
+/// Adds poses evenly along the cut and, separately, along the overlap.
+void add_cut(RobotProgram& program, const Course& course, const ToolFrame& frame, const Leg& leg, std::size_t moves) {
+  const TipCurve& curve = course.curve();
+  const double length = curve.length_mm();
+  double begin = 0.0;
+  const auto along = [&](double arc, ProgramPhase phase) {
+    add_pose(program, frame, leg.begin_s + leg.law.time_s(arc), curve.at(arc), phase, curve.at(begin).speed_mm_s);
+    begin = arc;
+  };
+  for (std::size_t i = 1; i <= moves; ++i)
+    along(i == moves ? length : program.spacing_mm * static_cast<double>(i), ProgramPhase::Cut);
+  const double overlap = course.overlap_mm();
+  const auto overlap_moves = static_cast<std::size_t>(std::ceil(overlap / program.spacing_mm));
+  for (std::size_t i = 1; i <= overlap_moves; ++i)
+    along(length + overlap * static_cast<double>(i) / static_cast<double>(overlap_moves), ProgramPhase::Overlap);
+}
 
 /// The place of a straight leg where the tip is that deep.
 TipSample at_depth(const Leg& leg, double depth_mm) {
@@ -102,14 +84,13 @@ std::size_t moves_for(const TipCurve& curve, const ProgramSettings& settings) {
 
 void write_poses(RobotProgram& program, const Course& course, const ToolFrame& frame, std::size_t moves) {
   program.poses.clear();
-  PoseWriter poses(program, course, frame);
   const Leg& first = course.legs().front();
-  poses.add(0.0, at_depth(first, first.from_depth_mm), ProgramPhase::Approach, 0.0);
+  add_pose(program, frame, 0.0, at_depth(first, first.from_depth_mm), ProgramPhase::Approach, 0.0);
   for (const Leg& leg : course.legs()) {
     if (leg.phase == ProgramPhase::Cut)
-      poses.add_cut(leg, moves);
+      add_cut(program, course, frame, leg, moves);
     else
-      poses.add(leg.end_s, at_depth(leg, leg.to_depth_mm), leg.phase, leg.nominal_speed_mm_s);
+      add_pose(program, frame, leg.end_s, at_depth(leg, leg.to_depth_mm), leg.phase, leg.nominal_speed_mm_s);
   }
 }
 

@@ -352,11 +352,10 @@ ProgramAudit audit_program(const WrittenProgram& program) {
 void judge_audit(Replay& replay, const ProgramAudit& audit) {
   if (replay.outcome != ReplayOutcome::Completed) return;
   if (audit.digest == ProgramDigest::Differs) {
-    replay.outcome = ReplayOutcome::Altered;
-    replay.reason = "its digest differs: the program was changed after it was checked";
+    robot_detail::end_replay(replay, ReplayOutcome::Altered,
+                             "its digest differs: the program was changed after it was checked");
   } else if (!audit.contradictions.empty()) {
-    replay.outcome = ReplayOutcome::FalseChecks;
-    replay.reason = audit.contradictions.front();
+    robot_detail::end_replay(replay, ReplayOutcome::FalseChecks, audit.contradictions.front());
   }
 }
 

@@ -13,6 +13,17 @@
 #include <limits>
 
 namespace incise {
+
+static void describe(Visitor& v, ProgramPose& p) {
+  v("phase", p.phase, "Phase of the program.");
+  v({"time_s", "Time from the start of the program.", "s"}, p.time_s);
+  v({"tip_mm", "Position of the tool's tip.", "mm"}, p.tip_mm);
+  v({"rotation_vector", "Orientation of the tool.", "rad"}, p.rotation_vector);
+  v({"tip_speed_mm_s", "Speed of the tip in the move that ends at this pose.", "mm/s"}, p.tip_speed_mm_s);
+  v({"depth_mm", "Depth of the tip below the surface; negative above it.", "mm"}, p.depth_mm);
+  v.derived("waypoint", p.waypoint, "Index of the path's waypoint at or before this pose.");
+}
+
 namespace {
 
 constexpr std::string_view kSchema = "incise.program/1";
@@ -41,20 +52,6 @@ void describe(Visitor& v, ProgramCheckEntry& entry) {
   v.derived("text", c.text, "Meaning of the check, for a person.");
 }
 
-struct PoseEntry {
-  ProgramPose pose;
-};
-void describe(Visitor& v, PoseEntry& entry) {
-  ProgramPose& p = entry.pose;
-  v("phase", p.phase, "Phase of the program.");
-  v({"time_s", "Time from the start of the program.", "s"}, p.time_s);
-  v({"tip_mm", "Position of the tool's tip.", "mm"}, p.tip_mm);
-  v({"rotation_vector", "Orientation of the tool.", "rad"}, p.rotation_vector);
-  v({"tip_speed_mm_s", "Speed of the tip in the move that ends at this pose.", "mm/s"}, p.tip_speed_mm_s);
-  v({"depth_mm", "Depth of the tip below the surface; negative above it.", "mm"}, p.depth_mm);
-  v.derived("waypoint", p.waypoint, "Index of the path's waypoint at or before this pose.");
-}
-
 /// Time (s), six joints (rad) and their speeds (rad/s).
 using MotionRow = std::array<double, 13>;
 struct MotionEntry {
@@ -80,13 +77,12 @@ void describe(Visitor& v, MotionEntry& entry) {
 struct ProgramFile {
   std::vector<std::array<std::string, 2>> header;
   RobotProgram program;
-  std::vector<PoseEntry> poses;
   MotionEntry motion;
   std::optional<std::vector<ProgramCheckEntry>> checks;
   std::optional<std::vector<std::string>> not_made;
 };
 void describe(Visitor& v, ProgramFile& file) {
-  const RobotProgram& p = file.program;
+  RobotProgram& p = file.program;
   constant(v, {"schema", "Format and version of this file."}, kSchema);
   v.derived("frame", PathFrame::Robot, "Frame of the poses.");
   const Field header{.name = "header", .meaning = "Keys and values of the header, as in a script.", .is_omitted = true};
@@ -98,7 +94,7 @@ void describe(Visitor& v, ProgramFile& file) {
   v.derived("overlap_mm", p.overlap_mm, "Distance that a closed path is cut beyond its start.");
   v.derived("spacing_mm", p.spacing_mm, "Spacing of the poses along the cut.");
   v.derived("chord_error_mm", p.chord_error_mm, "Greatest deviation of the moves from the smooth course.");
-  v("poses", file.poses, "Poses in the order of the program.");
+  v("poses", p.poses, "Poses in the order of the program.");
   v("motion", file.motion, "Motion of the arm's joints.");
   v({.name = "checks", .meaning = "Checks that were made of the program.", .is_omitted = true}, file.checks);
   v({.name = "checks_not_made", .meaning = "Checks that were not made, and why.", .is_omitted = true}, file.not_made);
@@ -113,7 +109,6 @@ std::string program_json(const RobotProgram& program, const ProgramChecks* check
     for (const auto& [key, value] : robot_detail::plain_header(robot_detail::with_digest_entry(header)))
       file.header.push_back({key, value});
   }
-  for (const ProgramPose& pose : program.poses) file.poses.push_back({pose});
   for (const JointSample& sample : program.motion.samples) {
     MotionRow& row = file.motion.rows.emplace_back();
     row[0] = sample.time_s;
@@ -132,8 +127,8 @@ WrittenProgram robot_detail::read_program_json(std::string_view text, const std:
   const auto file = from_json<ProgramFile>(parse_json(text, name), name, {}, kHint);
   WrittenProgram program;
   for (const auto& [key, value] : file.header) program.header.emplace_back(key, value);
-  if (file.poses.empty()) throw DataError(name, "/poses", "0 entries", "a list of 1 or more", kHint);
-  for (const PoseEntry& entry : file.poses) program.listed_poses.push_back(entry.pose);
+  if (file.program.poses.empty()) throw DataError(name, "/poses", "0 entries", "a list of 1 or more", kHint);
+  program.listed_poses = file.program.poses;
   if (file.checks) {
     for (const ProgramCheckEntry& entry : *file.checks)
       program.listed_checks.push_back(held_against_its_limit(entry.check));

@@ -1,5 +1,6 @@
 #include "robot/replay_measures.hpp"
 
+#include "robot/own_course.hpp"
 #include "robot/tip_curve.hpp"
 
 #include <incise/core/units.hpp>
@@ -139,10 +140,9 @@ bool is_in_air(ProgramPhase phase) {
 
 void judge_deviation(Replay& replay, double max_deviation_mm) {
   if (replay.outcome != ReplayOutcome::Completed || replay.max_cut_deviation_mm <= max_deviation_mm) return;
-  replay.outcome = ReplayOutcome::OffCourse;
-  replay.reason =
-      fmt::format("the tip is up to {:.2f} mm off the intended course in the cut; at most {} mm are allowed",
-                  replay.max_cut_deviation_mm, max_deviation_mm);
+  end_replay(replay, ReplayOutcome::OffCourse,
+             fmt::format("the tip is up to {:.2f} mm off the intended course in the cut; at most {} mm are allowed",
+                         replay.max_cut_deviation_mm, max_deviation_mm));
 }
 
 void judge_ends(Replay& replay, const ToolPath* path) {
@@ -151,13 +151,12 @@ void judge_ends(Replay& replay, const ToolPath* path) {
     if (replay.outcome != ReplayOutcome::Completed) return;
     if (path != nullptr) {
       const double height_mm = height_above_entry_mm(*path, sample.tip_mm);
-      if (height_mm > 0.0) return;
-      replay.reason = fmt::format("the program {} with the tip {:.2f} mm below the surface", verb, -height_mm);
-    } else {
-      if (is_in_air(sample.phase)) return;
-      replay.reason = fmt::format("the program {} in its phase '{}'", verb, to_string(sample.phase));
+      if (!(height_mm > 0.0))
+        end_replay(replay, outcome,
+                   fmt::format("the program {} with the tip {:.2f} mm below the surface", verb, -height_mm));
+    } else if (!is_in_air(sample.phase)) {
+      end_replay(replay, outcome, fmt::format("the program {} in its phase '{}'", verb, to_string(sample.phase)));
     }
-    replay.outcome = outcome;
   };
   judge(replay.samples.front(), ReplayOutcome::StartsInTissue, "begins");
   judge(replay.samples.back(), ReplayOutcome::EndsInTissue, "ends");
