@@ -403,12 +403,7 @@ std::optional<double> number_at(const Json& json, const std::string& pointer) {
 }
 
 void add_evaluation(const fs::path& root, ReportData& data) {
-  struct Measure {
-    const char* name;
-    const char* unit;
-    const char* pointer;
-  };
-  static constexpr std::array<Measure, 35> kMeasures{{
+  static constexpr std::array<std::array<const char*, 3>, 35> kMeasures{{
       {"Absolute error of the mid-line against its target, mean", "mm", "/abs_error_mm/mean"},
       {"… standard deviation along the contour", "mm", "/abs_error_mm/sd"},
       {"… greatest", "mm", "/abs_error_mm/max"},
@@ -454,9 +449,9 @@ void add_evaluation(const fs::path& root, ReportData& data) {
   const Json before = read(kCuts[0]);
   const Json after = read(kCuts[1]);
   if (before.is_null()) return;
-  for (const Measure& m : kMeasures) {
+  for (const auto& [name, unit, pointer] : kMeasures) {
     data.evaluation.push_back(
-        {m.name, m.unit, number_at(before, m.pointer), after.is_null() ? std::nullopt : number_at(after, m.pointer)});
+        {name, unit, number_at(before, pointer), after.is_null() ? std::nullopt : number_at(after, pointer)});
   }
 }
 
@@ -550,12 +545,7 @@ void add_kerf(const fs::path& root, ReportData& data) {
 void add_program(const fs::path& root, const Json& study, ReportData& data) {
   if (!study.contains("program")) return;
   const Json& program = study.at("program");
-  struct Shown {
-    const char* key;
-    const char* name;
-    const char* unit;
-  };
-  static constexpr std::array<Shown, 8> kShown{
+  static constexpr std::array<std::array<const char*, 3>, 8> kShown{
       {{"written", "written", ""},
        {"reason", "why not", ""},
        {"follows", "it follows the", ""},

@@ -7,6 +7,7 @@
 #include <incise/steps/run_report.hpp>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <array>
 
@@ -15,11 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Shown {
-  const char* key;
-  const char* name;
-  const char* unit;
-};
+using Shown = std::array<const char*, 3>;  // key, name, unit
 
 std::string words(const Json& value, std::string_view unit) {
   if (value.is_number_float()) return measure_text(value.get<double>(), unit);
@@ -39,8 +36,8 @@ ReportPicture picture_of(const std::filesystem::path& folder, const char* stem, 
                          const std::array<Shown, kCount>& shown) {
   const Json results = results_in(folder, fmt::format("{}.json", stem).c_str(), verb);
   ReportPicture picture;
-  for (const Shown& s : shown) {
-    if (results.contains(s.key)) picture.values.push_back({s.name, words(results.at(s.key), s.unit), s.unit});
+  for (const auto& [key, name, unit] : shown) {
+    if (results.contains(key)) picture.values.push_back({name, words(results.at(key), unit), unit});
   }
   picture.svgs.push_back(read_text(folder / fmt::format("{}.svg", stem)));
   return picture;
