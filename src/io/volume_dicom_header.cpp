@@ -15,34 +15,34 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Field {
+struct TagField {
   DicomTag tag;
   const char* name;
 };
-constexpr Field kStorageClass{0x00020002, "MediaStorageSOPClassUID"};
-constexpr Field kModality{0x00080060, "Modality"};
-constexpr Field kSeriesUid{0x0020000e, "SeriesInstanceUID"};
-constexpr Field kSeriesDescription{0x0008103e, "SeriesDescription"};
-constexpr Field kPosition{0x00200032, "ImagePositionPatient"};
-constexpr Field kOrientation{0x00200037, "ImageOrientationPatient"};
-constexpr Field kPixelSpacing{0x00280030, "PixelSpacing"};
-constexpr Field kRows{0x00280010, "Rows"};
-constexpr Field kColumns{0x00280011, "Columns"};
-constexpr Field kFrames{0x00280008, "NumberOfFrames"};
-constexpr Field kSamples{0x00280002, "SamplesPerPixel"};
-constexpr Field kPhotometric{0x00280004, "PhotometricInterpretation"};
-constexpr Field kBitsAllocated{0x00280100, "BitsAllocated"};
-constexpr Field kSigned{0x00280103, "PixelRepresentation"};
-constexpr Field kPadding{0x00280120, "PixelPaddingValue"};
-constexpr Field kPaddingLimit{0x00280121, "PixelPaddingRangeLimit"};
-constexpr Field kIntercept{0x00281052, "RescaleIntercept"};
-constexpr Field kSlope{0x00281053, "RescaleSlope"};
-constexpr Field kRescaleType{0x00281054, "RescaleType"};
+constexpr TagField kStorageClass{0x00020002, "MediaStorageSOPClassUID"};
+constexpr TagField kModality{0x00080060, "Modality"};
+constexpr TagField kSeriesUid{0x0020000e, "SeriesInstanceUID"};
+constexpr TagField kSeriesDescription{0x0008103e, "SeriesDescription"};
+constexpr TagField kPosition{0x00200032, "ImagePositionPatient"};
+constexpr TagField kOrientation{0x00200037, "ImageOrientationPatient"};
+constexpr TagField kPixelSpacing{0x00280030, "PixelSpacing"};
+constexpr TagField kRows{0x00280010, "Rows"};
+constexpr TagField kColumns{0x00280011, "Columns"};
+constexpr TagField kFrames{0x00280008, "NumberOfFrames"};
+constexpr TagField kSamples{0x00280002, "SamplesPerPixel"};
+constexpr TagField kPhotometric{0x00280004, "PhotometricInterpretation"};
+constexpr TagField kBitsAllocated{0x00280100, "BitsAllocated"};
+constexpr TagField kSigned{0x00280103, "PixelRepresentation"};
+constexpr TagField kPadding{0x00280120, "PixelPaddingValue"};
+constexpr TagField kPaddingLimit{0x00280121, "PixelPaddingRangeLimit"};
+constexpr TagField kIntercept{0x00281052, "RescaleIntercept"};
+constexpr TagField kSlope{0x00281053, "RescaleSlope"};
+constexpr TagField kRescaleType{0x00281054, "RescaleType"};
 
 const std::string kCtImageStorage = "1.2.840.10008.5.1.4.1.1.2";
 
 /// Returns an element's text without the padding that DICOM adds; empty if absent.
-std::string text_of(const DicomFile& file, const Field& field) {
+std::string text_of(const DicomFile& file, const TagField& field) {
   std::string_view text = file.value(field.tag).value_or("");
   const auto is_padding = [](char c) { return c == ' ' || c == '\0'; };
   while (!text.empty() && is_padding(text.back())) text.remove_suffix(1);
@@ -51,7 +51,7 @@ std::string text_of(const DicomFile& file, const Field& field) {
 }
 
 /// Reads exactly `count` decimal numbers, separated by backslashes.
-std::vector<double> numbers_of(const DicomFile& file, const Field& field, std::size_t count) {
+std::vector<double> numbers_of(const DicomFile& file, const TagField& field, std::size_t count) {
   const std::string text = text_of(file, field);
   const std::string expected = fmt::format("{} decimal number{}", count, count == 1 ? "" : "s");
   if (text.empty()) throw DataError(file.path(), field.name, "nothing", expected);
@@ -73,7 +73,7 @@ std::vector<double> numbers_of(const DicomFile& file, const Field& field, std::s
   return numbers;
 }
 
-std::optional<std::uint16_t> word_of(const DicomFile& file, const Field& field) {
+std::optional<std::uint16_t> word_of(const DicomFile& file, const TagField& field) {
   const auto value = file.value(field.tag);
   if (!value || value->size() < 2) return std::nullopt;
   std::uint16_t word = 0;
@@ -81,7 +81,7 @@ std::optional<std::uint16_t> word_of(const DicomFile& file, const Field& field) 
   return word;
 }
 
-int required_word(const DicomFile& file, const Field& field) {
+int required_word(const DicomFile& file, const TagField& field) {
   const auto word = word_of(file, field);
   if (!word) throw DataError(file.path(), field.name, "nothing", "a whole number");
   return *word;
