@@ -17,26 +17,10 @@ constexpr int kTet4 = 4;
 
 /// Returns the number of nodes of a Gmsh element type that bounds a body rather than fills it; 0 for all others.
 int nodes_of_lower_dimensional(int kind) {
-  switch (kind) {
-    case 1:
-      return 2;  // line
-    case 2:
-      return 3;  // triangle
-    case 3:
-      return 4;  // quadrangle
-    case 8:
-      return 3;  // curved line
-    case 9:
-      return 6;  // curved triangle
-    case 10:
-      return 9;  // curved quadrangle
-    case 15:
-      return 1;  // point
-    case 16:
-      return 8;  // curved quadrangle
-    default:
-      return 0;
-  }
+  // By type: 1 line, 2 triangle, 3 quadrangle; 8 to 10 the same, curved; 15 point; 16 curved quadrangle.
+  constexpr std::array kNodes{0, 2, 3, 4, 0, 0, 0, 0, 3, 6, 9, 0, 0, 0, 0, 1, 8};
+  const auto place = static_cast<std::size_t>(kind);
+  return place < kNodes.size() ? kNodes[place] : 0;
 }
 
 /// Reads the sections of one file into a mesh.

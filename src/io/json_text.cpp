@@ -6,8 +6,7 @@
 namespace incise {
 
 void write_json(const std::filesystem::path& path, const nlohmann::ordered_json& value) {
-  const std::string text = json_text(value);
-  write_atomically(path, text);
+  write_atomically(path, json_text(value));
 }
 
 nlohmann::ordered_json read_json(const std::filesystem::path& path) {

@@ -131,8 +131,7 @@ TetMesh read_tet_mesh(const std::filesystem::path& path) {
 }
 
 TetMesh read_tet_mesh(const std::filesystem::path& path, Monitor& monitor) {
-  TetMesh mesh = read_by_ending(path);
-  if (mesh.tets.empty()) throw DataError(path, "", "no tetrahedra", "a tetrahedral mesh");
+  TetMesh mesh = read_deformed_tet_mesh(path);
   make_positive(mesh, path, monitor);
   return mesh;
 }
@@ -168,8 +167,7 @@ void write_vtu(const std::filesystem::path& path, const TetMesh& mesh) {
   text.add("offsets", offsets);
   text.add("types", std::vector<std::uint8_t>(mesh.tets.size(), io_detail::kVtkTet));
   text.close("Cells");
-  const std::string content = text.finish();
-  write_atomically(path, content);
+  write_atomically(path, text.finish());
 }
 
 void require_body_size(const Box3& box, const std::filesystem::path& path) {

@@ -134,8 +134,7 @@ std::string path_json(const ToolPath& path) {
 }
 
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path) {
-  const std::string text = path_json(path);
-  write_atomically(file, text);
+  write_atomically(file, path_json(path));
 }
 
 void write_tool_path(const std::filesystem::path& file, const ToolPath& path, const Verdict& verdict) {

@@ -85,11 +85,6 @@ void add_cells(io_detail::VtkXmlText& text, const char* section, const std::vect
   text.close(section);
 }
 
-void write_whole(const std::filesystem::path& path, io_detail::VtkXmlText& text) {
-  const std::string content = text.finish();
-  write_atomically(path, content);
-}
-
 }  // namespace
 
 bool is_surface_name(const std::filesystem::path& path) {
@@ -138,7 +133,7 @@ void write_vtp(const std::filesystem::path& path, const TriMesh& surface) {
   }
   for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = static_cast<std::int32_t>((i + 1) * width);
   add_cells(text, is_cloud ? "Verts" : "Polys", connectivity, offsets);
-  write_whole(path, text);
+  write_atomically(path, text.finish());
 }
 
 void write_vtp(const std::filesystem::path& path, std::span<const Contour> contours,
@@ -161,7 +156,7 @@ void write_vtp(const std::filesystem::path& path, std::span<const Contour> conto
   text.add_data("PointData", point_data);
   text.add_points(points);
   add_cells(text, "Lines", connectivity, offsets);
-  write_whole(path, text);
+  write_atomically(path, text.finish());
 }
 
 }  // namespace incise

@@ -16,7 +16,6 @@ namespace incise {
 struct DicomHeader {
   std::filesystem::path file;
   std::string series_uid;
-  std::string series_description;
   SliceFrame frame;
   Vec3 position_mm = Vec3::Zero();
   int bits_allocated = 16;  ///< 8 or 16

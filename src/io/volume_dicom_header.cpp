@@ -159,7 +159,6 @@ DicomHeader read_dicom_header(const fs::path& path) {
   DicomHeader header;
   header.file = path;
   header.series_uid = text_of(file, kSeriesUid);
-  header.series_description = text_of(file, kSeriesDescription);
   header.frame = frame_of(file);
   const auto position = numbers_of(file, kPosition, 3);
   header.position_mm = Vec3(position[0], position[1], position[2]);

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cstring>
 #include <sstream>
 
 namespace incise {
@@ -69,22 +68,21 @@ std::string decimal_strings(std::initializer_list<double> values) {
   return text;
 }
 
-void set_text(gdcm::DataSet& data, const Tag& tag, VR::VRType vr, std::string text) {
-  if (text.size() % 2 != 0) text += vr == VR::UI ? '\0' : ' ';  // values have even length
+void set_bytes(gdcm::DataSet& data, const Tag& tag, VR::VRType vr, const void* bytes, std::size_t size) {
   gdcm::DataElement element(tag);
   element.SetVR(vr);
-  element.SetByteValue(text.data(), static_cast<std::uint32_t>(text.size()));
+  element.SetByteValue(static_cast<const char*>(bytes), static_cast<std::uint32_t>(size));
   data.Replace(element);
+}
+
+void set_text(gdcm::DataSet& data, const Tag& tag, VR::VRType vr, std::string text) {
+  if (text.size() % 2 != 0) text += vr == VR::UI ? '\0' : ' ';  // values have even length
+  set_bytes(data, tag, vr, text.data(), text.size());
 }
 
 void set_word(gdcm::DataSet& data, const Tag& tag, unsigned value) {
   const auto word = static_cast<std::uint16_t>(value);
-  std::array<char, sizeof word> bytes{};
-  std::memcpy(bytes.data(), &word, sizeof word);
-  gdcm::DataElement element(tag);
-  element.SetVR(VR::US);
-  element.SetByteValue(bytes.data(), sizeof word);
-  data.Replace(element);
+  set_bytes(data, tag, VR::US, &word, sizeof word);
 }
 
 void require_plain_text(const std::string& text) {
@@ -184,11 +182,7 @@ void set_pixels(gdcm::DataSet& data, const CtVolume& volume, int k) {
   const std::int16_t* hu = volume.voxels.data() + pixels * static_cast<std::size_t>(k);
   std::transform(hu, hu + pixels, stored.begin(),
                  [](std::int16_t value) { return static_cast<std::uint16_t>(value - kWrittenIntercept); });
-  gdcm::DataElement element(Tag(0x7fe0, 0x0010));
-  element.SetVR(VR::OW);
-  element.SetByteValue(reinterpret_cast<const char*>(stored.data()),
-                       static_cast<std::uint32_t>(pixels * sizeof(std::uint16_t)));
-  data.Replace(element);
+  set_bytes(data, Tag(0x7fe0, 0x0010), VR::OW, stored.data(), pixels * sizeof(std::uint16_t));
 }
 
 }  // namespace

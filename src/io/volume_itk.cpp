@@ -7,10 +7,11 @@
 #include "io/volume_nrrd_header.hpp"
 #include "io/volume_quiet.hpp"
 #include "io/volume_stack.hpp"
-#include "io/volume_staging.hpp"
 
+#include <incise/core/described_bytes.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/image_library_turn.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
 
 #include <fmt/format.h>
@@ -20,7 +21,6 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <new>
@@ -261,22 +261,6 @@ void set_whole_region(itk::ImageIOBase& io) {
   io.SetIORegion(region);
 }
 
-}  // namespace
-
-std::optional<VolumeFormat> format_of_name(const fs::path& path) {
-  const std::string name = io_detail::lower_case(path.filename().string());
-  const auto ends = [&name](const std::string& end) {
-    return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
-  };
-  if (ends(".nrrd") || ends(".nhdr")) return VolumeFormat::Nrrd;
-  if (ends(".nii") || ends(".nii.gz")) return VolumeFormat::Nifti;
-  if (ends(".mhd") || ends(".mha")) return VolumeFormat::MetaImage;
-  if (ends(".png")) return VolumeFormat::PictureStack;
-  return std::nullopt;
-}
-
-namespace {
-
 RawImage read_here(const fs::path& path, VolumeFormat format) {
   const QuietImageLibraries quiet;
   const auto io = make_image_io(format);
@@ -308,58 +292,54 @@ RawImage read_here(const fs::path& path, VolumeFormat format) {
   return image;
 }
 
-template <class T>
-void pack(const T& value, std::string& bytes) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
+/// A hidden folder beside the target, removed at the end: files get their final names in it (a .mhd names its voxel
+/// file) and then move out together.
+class StagingFolder {
+ public:
+  explicit StagingFolder(const fs::path& target) : target_(target), folder_(folder_beside(target)) {}
 
-template <class T>
-T unpack(const std::string& bytes, std::size_t& at) {
-  T value{};
-  if (at + sizeof value > bytes.size()) throw Error("an image that was truncated in transfer from another process");
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  at += sizeof value;
-  return value;
-}
+  [[nodiscard]] fs::path file() const { return folder_.path() / target_.filename(); }
 
-/// Packs an image into bytes, to send it from one process to another of the same program.
-std::string packed(const RawImage& image) {
-  std::string bytes;
-  for (const int size : image.grid.size) pack(size, bytes);
-  for (const double* numbers : {image.grid.spacing_mm.data(), image.grid.origin_mm.data()}) {
-    for (int k = 0; k < 3; ++k) pack(numbers[k], bytes);
+  /// Moves voxel files first, so that a header never names voxels that are not there.
+  void move_out() const {
+    for (const auto& entry : fs::directory_iterator(folder_.path())) {
+      if (entry.path() != file()) move_one(entry.path());
+    }
+    move_one(file());
   }
-  for (int k = 0; k < 9; ++k) pack(image.grid.direction.data()[k], bytes);
-  pack(image.component, bytes);
-  pack(image.notices.size(), bytes);
-  for (const std::string& notice : image.notices) {
-    pack(notice.size(), bytes);
-    bytes += notice;
-  }
-  bytes.append(image.bytes.data(), image.bytes.size());
-  return bytes;
-}
 
-RawImage unpacked(const std::string& bytes) {
-  RawImage image;
-  std::size_t at = 0;
-  for (int& size : image.grid.size) size = unpack<int>(bytes, at);
-  for (double* numbers : {image.grid.spacing_mm.data(), image.grid.origin_mm.data()}) {
-    for (int k = 0; k < 3; ++k) numbers[k] = unpack<double>(bytes, at);
+ private:
+  /// @throws DataError that names the target, not the hidden folder.
+  static AtomicFolder folder_beside(const fs::path& target) {
+    require_writable(target);
+    try {
+      return AtomicFolder(target.parent_path() / ("." + target.filename().string()));
+    } catch (const DataError& error) {
+      throw DataError(target, "", fmt::format("no room for a hidden folder beside it ({})", error.what()),
+                      "a folder that can be written");
+    }
   }
-  for (int k = 0; k < 9; ++k) image.grid.direction.data()[k] = unpack<double>(bytes, at);
-  image.component = unpack<Component>(bytes, at);
-  const auto notices = unpack<std::size_t>(bytes, at);
-  for (std::size_t i = 0; i < notices; ++i) {
-    const auto size = unpack<std::size_t>(bytes, at);
-    image.notices.push_back(bytes.substr(at, size));
-    at += size;
+  void move_one(const fs::path& from) const {
+    std::error_code error;
+    fs::rename(from, target_.parent_path() / from.filename(), error);
+    if (error) throw DataError(target_, "", error.message(), "a file that can be written");
   }
-  image.bytes.assign(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.end());
-  return image;
-}
+
+  fs::path target_;
+  AtomicFolder folder_;  // is never put in place
+};
 
 }  // namespace
+
+std::optional<VolumeFormat> format_of_name(const fs::path& path) {
+  const std::string name = io_detail::lower_case(path.filename().string());
+  const auto ends = [&name](std::string_view end) { return name.size() > end.size() && name.ends_with(end); };
+  if (ends(".nrrd") || ends(".nhdr")) return VolumeFormat::Nrrd;
+  if (ends(".nii") || ends(".nii.gz")) return VolumeFormat::Nifti;
+  if (ends(".mhd") || ends(".mha")) return VolumeFormat::MetaImage;
+  if (ends(".png")) return VolumeFormat::PictureStack;
+  return std::nullopt;
+}
 
 RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
   require_regular_file(path);
@@ -369,8 +349,9 @@ RawImage read_itk_image(const fs::path& path, VolumeFormat format) {
   const std::uint64_t size = total_size(path);
   limits.memory_bytes = kLibraryMemory + 3 * std::min(kLargestGain * size, kLargestInputBytes);
   limits.processor_s = static_cast<unsigned>(60 + size / (4 << 20));
-  return unpacked(io_detail::in_child_process(path, std::string(to_string(format)), limits,
-                                              [&] { return packed(read_here(path, format)); }));
+  const std::string answer = io_detail::in_child_process(path, std::string(to_string(format)), limits,
+                                                         [&] { return bytes_of(read_here(path, format)); });
+  return from_bytes<RawImage>(answer, path);
 }
 
 VolumeFormat format_to_write(const fs::path& path) {

@@ -16,9 +16,17 @@ enum class Component { U8, I8, U16, I16, U32, I32, U64, I64, F32, F64 };
 struct RawImage {
   VolumeGrid grid;  ///< LPS, mm; a picture has size[2] = 1
   Component component = Component::I16;
-  std::vector<char> bytes;           ///< grid.voxel_count() components in machine byte order, i fastest
+  std::string bytes;                 ///< grid.voxel_count() components in machine byte order, i fastest
   std::vector<std::string> notices;  ///< remarks on the file, for the user
 };
+inline void describe(Visitor& v, RawImage& image) {
+  v("grid", image.grid, "Grid of the voxels.");
+  auto component = static_cast<int>(image.component);
+  v("component", component, "Type of the values.");
+  image.component = static_cast<Component>(component);
+  v("notices", image.notices, "Remarks on the file.");
+  v("bytes", image.bytes, "The values.");  // last: a text that is appended to such a large one would double its memory
+}
 
 /// Returns the volume format of a file name, in upper or lower case; nothing for other names.
 [[nodiscard]] std::optional<VolumeFormat> format_of_name(const std::filesystem::path& path);

@@ -1,11 +1,11 @@
 #include "io/volume_pictures.hpp"
 
-#include "io/volume_itk.hpp"
-#include "io/volume_png.hpp"
+#include "io/picture_file.hpp"
 #include "io/volume_stack.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/workers.hpp>
+#include <incise/io/atomic_file.hpp>
 
 #include <fmt/format.h>
 
@@ -155,6 +155,24 @@ void read_slices(const std::vector<Picture>& pictures, const HuTable& table, con
 }
 
 }  // namespace
+
+RawImage read_gray_png(const fs::path& file) {
+  constexpr double kMostPixels = 1073741824.0;  // 32768 x 32768 in a slice: far above any scanner's
+  constexpr int kGray = 0, kGrayAndAlpha = 4;
+  const std::string bytes = read_text(file);
+  const PngHeader header = read_png_header(bytes, file, kMostPixels);
+  if (header.colour != kGray) {
+    throw DataError(file, "colour type", header.colour == kGrayAndAlpha ? "gray with transparency" : "colour",
+                    "gray only");
+  }
+  if (header.bits != 8 && header.bits != 16)
+    throw DataError(file, "bit depth", fmt::format("{}", header.bits), "8 or 16");
+  RawImage image;
+  image.grid.size = {header.width, header.height, 1};
+  image.component = header.bits == 8 ? Component::U8 : Component::U16;
+  image.bytes = read_png(bytes, file, kMostPixels).bytes;
+  return image;
+}
 
 ReadVolume read_picture_folder(const fs::path& folder, const CtReadSettings& settings, Monitor& monitor) {
   require_settings(folder, settings);

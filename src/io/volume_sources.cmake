@@ -24,6 +24,5 @@ set(volume_sources
   volume_itk.cpp
   volume_nrrd_header.cpp
   volume_pictures.cpp
-  volume_png.cpp
   volume_quiet.cpp
   volume_stack.cpp)

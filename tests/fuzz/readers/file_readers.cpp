@@ -2,7 +2,7 @@
 
 #include "io/volume_dicom.hpp"
 #include "io/volume_dicom_file.hpp"
-#include "io/volume_png.hpp"
+#include "io/volume_pictures.hpp"
 #include "reader.hpp"
 
 #include <incise/core/described_json.hpp>
