@@ -240,6 +240,13 @@ std::string read_text(const fs::path& path) {
   return text;
 }
 
+void make_folder(const fs::path& folder, const char* expected) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw DataError(folder, "", error ? error.message() : "something that is not a folder", expected);
+}
+
 void require_replaceable(const fs::path& name) {
   std::error_code error;
   const fs::path folder = without_trailing_slash(name);

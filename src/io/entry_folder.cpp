@@ -35,15 +35,11 @@ EntryFolder::EntryFolder(std::filesystem::path folder) : folder_(std::move(folde
 std::optional<std::string> EntryFolder::load(const std::string& name) {
   const std::filesystem::path file = place_of(name);
   if (!std::filesystem::exists(file)) return std::nullopt;
-  require_regular_file(file);
   return read_text(file);
 }
 
 void EntryFolder::save(const std::string& name, const std::string& bytes) {
-  std::error_code error;
-  const std::filesystem::path folder = place_of(name).parent_path();
-  std::filesystem::create_directories(folder, error);
-  if (error) throw DataError(folder, "", error.message(), "a folder that can be written");
+  make_folder(place_of(name).parent_path());
   write_atomically(place_of(name), bytes);
 }
 

@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/folder_lock.hpp>
 
 #include <fcntl.h>
@@ -49,11 +50,7 @@ bool is_still_there(int file, const std::filesystem::path& folder) {
 }
 
 int open_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || !std::filesystem::is_directory(folder)) {
-    throw DataError(folder, "", error ? error.message() : "something that is not a folder", "a folder that can be written");
-  }
+  make_folder(folder);
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (file < 0) throw DataError(folder, "", std::strerror(errno), "a folder that can be read and written");
   return file;

@@ -1,3 +1,4 @@
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/core/nearest_name.hpp>
 #include <incise/io/atomic_file.hpp>
@@ -24,12 +25,6 @@ constexpr const char* kSecondSchema = "incise.specimen/2";
 constexpr const char* kTruth = "The truth about a virtual specimen, for tests. No part of it may reach a planner.";
 constexpr const char* kVirtual = "Virtual: computed by incise's bench, no real tissue.";
 
-Json matrix(const Mat4& T) {
-  Json rows = Json::array();
-  for (int r = 0; r < 4; ++r) rows.push_back({T(r, 0), T(r, 1), T(r, 2), T(r, 3)});
-  return rows;
-}
-
 template <class S>
 std::string spread_text(const HiddenParameter<S>& spec) {
   switch (spec.drawn_as) {
@@ -51,13 +46,6 @@ void require_schema(const Json& document, const char* expected, const std::files
                     fmt::format("\"{}\"", expected));
 }
 
-double number_in(const Json& object, const std::string& key, const std::filesystem::path& file) {
-  const auto found = object.find(key);
-  if (found == object.end() || !found->is_number() || !std::isfinite(found->get<double>()))
-    throw DataError(file, key, found == object.end() ? "nothing" : found->dump(), "a finite number");
-  return found->get<double>();
-}
-
 /// A key of a specimen file beside its parameters.
 struct WholeNumber {
   const char* key;
@@ -67,9 +55,9 @@ constexpr WholeNumber kSeed{
     "seed", "Seed of the shape, of the fields inside, of all noise and of every parameter that is not given."};
 constexpr WholeNumber kSeries{"series", "Seed of the hand-eye error, which the specimens of a series share."};
 
-template <class Parameters>
-std::string schema_text(const char* name, const std::vector<WholeNumber>& numbers, const Parameters& parameters,
-                        const std::vector<double>& defaults) {
+template <class Specimen, class Parameters>
+std::string schema_text(const char* name, const std::vector<WholeNumber>& numbers, const Parameters& parameters) {
+  const Specimen defaults{};
   Json schema;
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = name;
@@ -84,24 +72,20 @@ std::string schema_text(const char* name, const std::vector<WholeNumber>& number
     properties[number.key] = {{"type", "integer"}, {"minimum", 0}, {"description", number.meaning}};
     schema["required"].push_back(number.key);
   }
-  for (std::size_t n = 0; n < parameters.size(); ++n) {
-    const auto& spec = parameters[n];
-    properties[std::string(spec.name)] = {
-        {"type", "number"},        {"minimum", spec.low},         {"maximum", spec.high},
-        {"default", defaults[n]},  {"description", spec.meaning}, {"x-spread", spread_text(spec)},
-        {"x-source", spec.source}, {"x-shows-in", spec.shows_in}};
+  for (const auto& spec : parameters) {
+    properties[std::string(spec.name)] = {{"type", "number"},
+                                          {"minimum", spec.low},
+                                          {"maximum", spec.high},
+                                          {"default", defaults.*spec.member},
+                                          {"description", spec.meaning},
+                                          {"x-spread", spread_text(spec)},
+                                          {"x-source", spec.source},
+                                          {"x-shows-in", spec.shows_in}};
     if constexpr (requires { spec.factor; })
       properties[std::string(spec.name)]["x-factor"] = spec.factor ? Json(to_string(*spec.factor)) : Json(nullptr);
   }
   schema["additionalProperties"] = false;
   return json_text(schema);
-}
-
-template <class Specimen, class Parameters>
-std::vector<double> values_of(const Specimen& specimen, const Parameters& parameters) {
-  std::vector<double> values;
-  for (const auto& spec : parameters) values.push_back(specimen.*spec.member);
-  return values;
 }
 
 std::uint64_t whole_number_in(const Json& document, const char* key, const std::filesystem::path& file) {
@@ -128,22 +112,37 @@ void read_parameters(const Json& document, const char* schema, std::vector<std::
     const auto place = static_cast<std::size_t>(found - names.begin());
     if (place < known) continue;
     const auto& spec = parameters[place - known];
-    const double number = number_in(document, key, file);
+    if (!value.is_number() || !std::isfinite(value.get<double>()))
+      throw DataError(file, key, value.dump(), "a finite number");
+    const double number = value.get<double>();
     if (number < spec.low || number > spec.high)
       throw DataError(file, key, fmt::format("{}", number), fmt::format("a number in [{}, {}]", spec.low, spec.high));
     specimen.*spec.member = number;
   }
 }
 
+/// Writes what the truths of both laboratories have in common.
+template <class Body>
+void write_body(const std::filesystem::path& folder, const Body& body, const Contour& edge_rest,
+                const Contour& edge_stretched) {
+  write_json(folder / "specimen.json", specimen_json(body.specimen));
+  write_contour_csv(folder / "tumor_edge_rest.csv", edge_rest);
+  write_contour_csv(folder / "tumor_edge_stretched.csv", edge_stretched);
+  const Placement placement = placement_of(body.specimen);
+  write_json(folder / "truth.json", {{"note", kTruth},
+                                     {"stretch_force_n", body.stretch_force_n},
+                                     {"T_robot_specimen", to_json(T_robot_specimen(placement))},
+                                     {"T_robot_camera", to_json(T_robot_camera(placement))}});
+}
+
 }  // namespace
 
 std::string bench_schema_json() {
-  return schema_text(kFirstSchema, {kSeed}, parameter_specs(), values_of(Specimen{}, parameter_specs()));
+  return schema_text<Specimen>(kFirstSchema, {kSeed}, parameter_specs());
 }
 
 std::string second_bench_schema_json() {
-  return schema_text(kSecondSchema, {kSeed, kSeries}, second_bench::parameters(),
-                     values_of(second_bench::Specimen{}, second_bench::parameters()));
+  return schema_text<second_bench::Specimen>(kSecondSchema, {kSeed, kSeries}, second_bench::parameters());
 }
 
 Json specimen_json(const Specimen& specimen) {
@@ -212,7 +211,7 @@ void write_readings(const std::filesystem::path& folder, const Readings& reading
   camera["cx"] = frame.camera.cx;
   camera["cy"] = frame.camera.cy;
   camera["depth_scale"] = frame.depth_unit_mm / 1000.0;
-  camera["T_robot_camera"] = matrix(readings.T_robot_camera);
+  camera["T_robot_camera"] = to_json(readings.T_robot_camera);
   write_json(folder / "camera.json", camera);
   Json json;
   json["note"] = kVirtual;
@@ -236,32 +235,16 @@ void write_readings(const std::filesystem::path& folder, const Readings& reading
 }
 
 void write_truth(const std::filesystem::path& folder, const BenchBody& body) {
-  write_json(folder / "specimen.json", specimen_json(body.specimen));
-  write_contour_csv(folder / "tumor_edge_rest.csv", body.tumor_edge_rest);
-  write_contour_csv(folder / "tumor_edge_stretched.csv", tumor_edge_at(body, body.stretched.positions));
+  write_body(folder, body, body.tumor_edge_rest, tumor_edge_at(body, body.stretched.positions));
   TetMesh stretched;
   stretched.vertices = body.stretched.positions;
   stretched.tets = body.tissue->mesh.tets;
   stretched.cell_data["toughness_kpa"] = {1, body.toughness_kpa};
   write_vtu(folder / "stretched.vtu", stretched);
-  Json json;
-  json["note"] = kTruth;
-  json["stretch_force_n"] = body.stretch_force_n;
-  json["T_robot_specimen"] = matrix(T_robot_specimen(placement_of(body.specimen)));
-  json["T_robot_camera"] = matrix(T_robot_camera(placement_of(body.specimen)));
-  write_json(folder / "truth.json", json);
 }
 
 void write_truth(const std::filesystem::path& folder, const second_bench::Body& body) {
-  write_json(folder / "specimen.json", specimen_json(body.specimen));
-  write_contour_csv(folder / "tumor_edge_rest.csv", second_bench::tumor_edge_rest_of(*body.state));
-  write_contour_csv(folder / "tumor_edge_stretched.csv", second_bench::tumor_edge_of(*body.state));
-  Json json;
-  json["note"] = kTruth;
-  json["stretch_force_n"] = body.stretch_force_n;
-  json["T_robot_specimen"] = matrix(T_robot_specimen(second_bench::placement_of(body.specimen)));
-  json["T_robot_camera"] = matrix(T_robot_camera(second_bench::placement_of(body.specimen)));
-  write_json(folder / "truth.json", json);
+  write_body(folder, body, second_bench::tumor_edge_rest_of(*body.state), second_bench::tumor_edge_of(*body.state));
 }
 
 }  // namespace incise

@@ -144,9 +144,7 @@ ExperimentSteps::ExperimentSteps(std::filesystem::path folder, Workers& workers,
       workers_(workers),
       outer_(monitor),
       cache_(std::make_unique<EntryFolder>(folder_ / "cache")) {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) throw DataError(folder_, "", error.message(), "a folder that can be made");
+  make_folder(folder_, "a folder that can be made");
 }
 
 StepAnswer ExperimentSteps::run(const ExperimentStep& step) {

@@ -117,12 +117,7 @@ RunFolder::RunFolder(CaseFile file, std::filesystem::path root, RunContext conte
       root_(std::move(root)),
       context_(std::move(context)),
       cache_(std::make_unique<EntryFolder>(root_ / "cache")) {
-  std::error_code error;
-  std::filesystem::create_directories(root_, error);
-  if (error || !std::filesystem::is_directory(root_)) {
-    throw DataError(root_, "", error ? error.message() : "something that is not a folder",
-                    "a folder that can be written");
-  }
+  make_folder(root_);
   for (const std::filesystem::path& folder : {root_, root_ / "cache"})
     remove_abandoned_temporaries(folder);  // of a run that was killed
 }
