@@ -145,6 +145,10 @@ TextTable read_csv_text(const std::filesystem::path& path, std::size_t most_cell
   return table;
 }
 
+std::string number_cell(const std::optional<double>& number) {
+  return number ? fmt::format("{}", *number) : std::string();
+}
+
 std::string csv_text(const TextTable& table) {
   require_rectangular(table);
   std::string text = joined(table.header, ",", quoted) + "\n";

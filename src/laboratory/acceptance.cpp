@@ -2,6 +2,7 @@
 #include "laboratory/trial_on_bench.hpp"
 
 #include <incise/core/batch_monitor.hpp>
+#include <incise/core/described_json.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/folder_lock.hpp>
 #include <incise/io/json_file.hpp>
@@ -10,8 +11,6 @@
 #include <incise/steps/case_steps.hpp>
 
 #include <fmt/format.h>
-
-#include <chrono>
 
 namespace incise {
 namespace {
@@ -23,12 +22,10 @@ constexpr const char* kAcceptanceFile = "acceptance.json";
 constexpr const char* kAcceptanceTable = "acceptance.csv";
 
 Rows asked_json(const AcceptanceSettings& settings) {
-  Rows factors = Rows::array();
-  for (const second_bench::Factor factor : settings.factors) factors.push_back(to_string(factor));
   return {{"specimens", settings.specimens},
-          {"factors", factors},
-          {"speed_mm_s", settings.speed_mm_s ? Rows(*settings.speed_mm_s) : Rows(nullptr)},
-          {"power_w", settings.power_w ? Rows(*settings.power_w) : Rows(nullptr)},
+          {"factors", laboratory::names_of_factors(settings.factors)},
+          {"speed_mm_s", to_json(settings.speed_mm_s)},
+          {"power_w", to_json(settings.power_w)},
           {"overrides", settings.overrides},
           {"paper_pass", settings.with_paper_pass},
           {"tets", settings.tets}};
@@ -56,16 +53,14 @@ void cut_twice(const AcceptanceSettings& settings, const std::filesystem::path& 
   }
   trial.ended_at = specimen.ended_at();
   const auto error = [](const laboratory::TrialCut* cut) {
-    const auto mean = cut != nullptr ? laboratory::mean_error_mm(*cut) : std::nullopt;
-    return mean ? Rows(*mean) : Rows(nullptr);
+    return to_json(cut != nullptr ? laboratory::mean_error_mm(*cut) : std::nullopt);
   };
   row["seed"] = trial.seed;
   row["prescription"] = specimen.prescription();
   row["youngs_modulus_kpa"] = specimen.youngs_modulus_kpa() > 0.0 ? Rows(specimen.youngs_modulus_kpa()) : Rows(nullptr);
   row["planned_mm"] = error(&trial.planned);
   row["paper_pass_mm"] = error(laboratory::find_rival(trial, laboratory::RivalPath::PaperPass));
-  row["ended_at"] = Rows::array();
-  for (const std::string& refusal : laboratory::refusals_of(trial)) row["ended_at"].push_back(refusal);
+  row["ended_at"] = laboratory::refusals_of(trial);
 }
 
 Rows summary_of_rows(const Rows& rows) {
@@ -112,7 +107,7 @@ std::string csv_of(const Rows& rows) {
 
 nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const std::filesystem::path& output,
                                     const RunContext& run, Workers& workers, Monitor& monitor) {
-  const auto start = std::chrono::steady_clock::now();
+  const steps::StepContext context{run, workers, monitor};
   const FolderLock lock(output);
   laboratory::claim_folder(output, {"incise.acceptance/1", "an acceptance"}, run.seed,
                            {kAcceptanceFile, kAcceptanceTable, "manifest.json"});
@@ -135,7 +130,7 @@ nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const st
   result["summary"] = summary_of_rows(rows);
   result["rows"] = rows;
   write_atomically(output / kAcceptanceTable, csv_of(rows));
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double wall_s = context.wall_s();
   write_manifest(output, steps::manifest_of(run, asked_json(settings).dump(), {}, wall_s));
   result["wall_s"] = wall_s;
   write_json(output / kAcceptanceFile, result);

@@ -112,9 +112,9 @@ void read_parameters(const Json& document, const char* schema, std::vector<std::
     const auto place = static_cast<std::size_t>(found - names.begin());
     if (place < known) continue;
     const auto& spec = parameters[place - known];
-    if (!value.is_number() || !std::isfinite(value.get<double>()))
+    if (!value.is_number() || !std::isfinite(value.template get<double>()))
       throw DataError(file, key, value.dump(), "a finite number");
-    const double number = value.get<double>();
+    const double number = value.template get<double>();
     if (number < spec.low || number > spec.high)
       throw DataError(file, key, fmt::format("{}", number), fmt::format("a number in [{}, {}]", spec.low, spec.high));
     specimen.*spec.member = number;

@@ -19,7 +19,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace incise {
@@ -38,11 +37,9 @@ struct ScreenedCut {
 };
 
 ScreeningJson screening_json(const ScreeningSettings& settings, const FractionalFactorial& design) {
-  ScreeningJson factors = ScreeningJson::array();
-  for (const second_bench::Factor factor : settings.factors) factors.push_back(to_string(factor));
   return {{"specimens", settings.specimens},
           {"runs", design.runs()},
-          {"factors", factors},
+          {"factors", laboratory::names_of_factors(settings.factors)},
           {"overrides", settings.overrides},
           {"tets", settings.tets}};
 }
@@ -90,15 +87,12 @@ TextTable factors_csv(const FactorTable& table) {
   TextTable csv{{"factor", "change_mm", "change_low_mm", "change_high_mm", "level_mm", "shift_mm", "rest_mm",
                  "made_with", "measured_with", "made_without", "measured_without"},
                 {}};
-  const auto text = [](bool is_there, double value) { return is_there ? fmt::format("{}", value) : std::string(); };
   for (const laboratory::FactorEffect& f : table.factors) {
-    const Interval ends = f.change_95.value_or(Interval{});
-    const laboratory::ErrorParts moved = f.moved.value_or(laboratory::ErrorParts{});
-    const bool is_estimated = f.moved.has_value();
     csv.rows.push_back(
-        {f.factor, text(f.change_mm.has_value(), f.change_mm.value_or(0.0)), text(f.change_95.has_value(), ends.low),
-         text(f.change_95.has_value(), ends.high), text(is_estimated, moved.level_mm),
-         text(is_estimated, moved.shift_mm), text(is_estimated, moved.rest_mm), fmt::format("{}", f.made_with),
+        {f.factor, number_cell(f.change_mm), number_cell(f.change_95, &Interval::low),
+         number_cell(f.change_95, &Interval::high), number_cell(f.moved, &laboratory::ErrorParts::level_mm),
+         number_cell(f.moved, &laboratory::ErrorParts::shift_mm),
+         number_cell(f.moved, &laboratory::ErrorParts::rest_mm), fmt::format("{}", f.made_with),
          fmt::format("{}", f.measured_with), fmt::format("{}", f.made_without), fmt::format("{}", f.measured_without)});
   }
   return csv;
@@ -140,7 +134,7 @@ std::string factors_svg(const FactorTable& table) {
 nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const std::filesystem::path& output,
                                       const RunContext& run, Workers& workers, Monitor& monitor) {
   INCISE_REQUIRE(settings.factors.size() >= 2, "expected at least two factors: with one, chance cannot be estimated");
-  const auto start = std::chrono::steady_clock::now();
+  const steps::StepContext context{run, workers, monitor};
   const FractionalFactorial design(settings.factors.size());
   const FolderLock lock(output);
   laboratory::claim_folder(output, {"incise.factors/1", "a screening of factors"}, run.seed,
@@ -170,22 +164,19 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
     const std::size_t s = i / runs, r = i % runs;
     errors[s].push_back(cuts[i].errors_mm);
     means[s].push_back(cuts[i].errors_mm ? cuts[i].mean_abs_mm : std::nullopt);
-    ScreeningJson on = ScreeningJson::array();
-    for (const second_bench::Factor factor : factors_of(r)) on.push_back(to_string(factor));
+    const std::vector<std::string> on = laboratory::names_of_factors(factors_of(r));
     rows.push_back({{"specimen", specimen_name(s)},
                     {"seed", run.seed + s},
                     {"run", r + 1},
                     {"folder", run_name(r)},
                     {"factors", on},
-                    {"mean_abs_error_mm", means[s].back() ? ScreeningJson(*means[s].back()) : ScreeningJson(nullptr)},
+                    {"mean_abs_error_mm", to_json(means[s].back())},
                     {"ended_at", cuts[i].ended_at.empty() ? ScreeningJson(nullptr) : ScreeningJson(cuts[i].ended_at)}});
     csv.rows.push_back({specimen_name(s), fmt::format("{}", run.seed + s), fmt::format("{}", r + 1),
-                        fmt::format("{}", fmt::join(on.get<std::vector<std::string>>(), " ")),
-                        means[s].back() ? fmt::format("{}", *means[s].back()) : "", cuts[i].ended_at});
+                        fmt::format("{}", fmt::join(on, " ")), number_cell(means[s].back()), cuts[i].ended_at});
   }
-  std::vector<std::string> names;
-  for (const second_bench::Factor factor : settings.factors) names.emplace_back(to_string(factor));
-  FactorTable table = laboratory::factor_table(design, names, errors, means);
+  const FactorTable table =
+      laboratory::factor_table(design, laboratory::names_of_factors(settings.factors), errors, means);
   ScreeningJson result;
   result["specimen_is"] = "virtual";
   result["settings"] = screening_json(settings, design);
@@ -197,7 +188,7 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
   write_atomically(output / "factors.csv", csv_text(factors_csv(table)));
   write_atomically(output / "cuts.csv", csv_text(csv));
   if (table.chance) write_atomically(output / "factors.svg", factors_svg(table));
-  const double wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double wall_s = context.wall_s();
   write_manifest(output, steps::manifest_of(run, screening_json(settings, design).dump(), {}, wall_s));
   result["figure"] = table.chance ? ScreeningJson((output / "factors.svg").string()) : ScreeningJson(nullptr);
   result["wall_s"] = wall_s;

@@ -171,8 +171,7 @@ PoolJson comparison_json(const std::vector<TestedSeries>& series, const PathComp
   std::size_t tested = 0;
   for (const TestedSeries& specimens : series) tested += specimens.size();
   PoolJson json{{"tested", tested}, {"rivals", laboratory::paths_json(paths)}};
-  json["best_without_simulation"] =
-      paths.best_without_simulation ? PoolJson(*paths.best_without_simulation) : PoolJson(nullptr);
+  json["best_without_simulation"] = to_json(paths.best_without_simulation);
   return json;
 }
 
@@ -187,10 +186,9 @@ PoolJson series_json(const PooledSeries& series, const PathComparison& pooled) {
   json["differences_mm"] = PoolJson::object();
   for (const PathResult& path : pooled.paths) {
     if (!pooled.best_without_simulation || path.name == *pooled.best_without_simulation) continue;
-    const auto difference =
-        laboratory::compare_two(std::span(&series.tested, 1), *pooled.best_without_simulation, path.name)
-            .difference_mm();
-    json["differences_mm"][path.name] = difference ? PoolJson(*difference) : PoolJson(nullptr);
+    json["differences_mm"][path.name] =
+        to_json(laboratory::compare_two(std::span(&series.tested, 1), *pooled.best_without_simulation, path.name)
+                    .difference_mm());
   }
   return json;
 }
@@ -199,15 +197,13 @@ TextTable paths_csv(const std::vector<std::pair<std::string, PathComparison>>& p
   TextTable csv{{"of", "path", "simulated", "pairs", "mean_mm", "worse", "harmed", "uncut", "closed", "close_margins",
                  "compared", "difference_mm", "low_mm", "high_mm"},
                 {}};
-  const auto text = [](const std::optional<double>& value) { return value ? fmt::format("{}", *value) : ""; };
   for (const auto& [of, paths] : parts) {
     for (const PathResult& p : paths.paths) {
-      csv.rows.push_back({of, p.name, p.is_simulated ? "yes" : "no", fmt::format("{}", p.pairs), text(p.mean_mm),
+      csv.rows.push_back({of, p.name, p.is_simulated ? "yes" : "no", fmt::format("{}", p.pairs), number_cell(p.mean_mm),
                           fmt::format("{}", p.worse), fmt::format("{}", p.harmed), fmt::format("{}", p.uncut),
                           fmt::format("{}", p.closed), fmt::format("{}", p.close_margins),
-                          fmt::format("{}", p.compared), text(p.difference_mm),
-                          text(p.confidence ? std::optional(p.confidence->low) : std::nullopt),
-                          text(p.confidence ? std::optional(p.confidence->high) : std::nullopt)});
+                          fmt::format("{}", p.compared), number_cell(p.difference_mm),
+                          number_cell(p.confidence, &Interval::low), number_cell(p.confidence, &Interval::high)});
     }
   }
   return csv;

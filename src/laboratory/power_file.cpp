@@ -19,10 +19,6 @@ void require_possible(const TimedCut& cut, const std::filesystem::path& file, st
                   fmt::format("{} to {} mm/s", kSlowestCutMmS, kFastestCutMmS));
 }
 
-std::string number_cell(const std::optional<double>& value) {
-  return value ? fmt::format("{}", *value) : std::string();
-}
-
 void add_rows(TextTable& table, const char* series, const std::vector<PowerCut>& cuts) {
   for (const PowerCut& cut : cuts) {
     table.rows.push_back({series, cut.specimen, fmt::format("{}", cut.power_w), fmt::format("{}", cut.speed_mm_s),

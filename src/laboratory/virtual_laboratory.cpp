@@ -9,6 +9,12 @@
 
 namespace incise::laboratory {
 
+std::vector<std::string> names_of_factors(const second_bench::Factors& factors) {
+  std::vector<std::string> names;
+  for (const second_bench::Factor factor : factors) names.emplace_back(to_string(factor));
+  return names;
+}
+
 StepAnswer VirtualLaboratory::take_readings(const std::filesystem::path& folder) {
   std::vector<std::string> arguments{"bench", "make"};
   std::vector<std::filesystem::path> inputs;
@@ -34,8 +40,7 @@ StepAnswer VirtualLaboratory::take_readings(const std::filesystem::path& folder)
                      {"--bench", std::to_string(hidden_.bench), "--series", std::to_string(hidden_.series)});
     if (hidden_.factors != second_bench::all_factors()) {
       request.factors = hidden_.factors;
-      std::vector<std::string> names;
-      for (const second_bench::Factor factor : hidden_.factors) names.emplace_back(to_string(factor));
+      const std::vector<std::string> names = names_of_factors(hidden_.factors);
       arguments.insert(arguments.end(),
                        {"--factors", names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","))});
     }

@@ -22,6 +22,9 @@ struct HiddenSpecimen {
   second_bench::Factors factors = second_bench::all_factors();
 };
 
+/// The names of factors, in their order.
+[[nodiscard]] std::vector<std::string> names_of_factors(const second_bench::Factors& factors);
+
 /// The laboratory of the virtual bench: it alone knows where the truth is.
 class VirtualLaboratory : public Laboratory {
  public:

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,13 @@ struct TextTable {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::size_t> lines;  ///< number of each row's line in the file, from 1
 };
+
+/// Returns a number as a cell, empty if it is absent; or one member of a value that may be absent.
+[[nodiscard]] std::string number_cell(const std::optional<double>& number);
+template <class T>
+[[nodiscard]] std::string number_cell(const std::optional<T>& value, double T::*member) {
+  return number_cell(value ? std::optional((*value).*member) : std::nullopt);
+}
 
 /// Reads every cell of a `.csv` as text, trimmed; for columns whose printed digits matter. Cells in double quotes may
 /// hold commas; a quote inside is doubled. Line ends inside quotes are not supported.
