@@ -175,12 +175,9 @@ Points cloud_of(const FrameShot& frame) {
   Points cloud;
   for (int v = 0; v < frame.camera.height; v += kCloudStride) {
     for (int u = 0; u < frame.camera.width; u += kCloudStride) {
-      const std::size_t n =
-          static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.camera.width) + static_cast<std::size_t>(u);
+      const std::size_t n = place(frame.camera, u, v);
       if (frame.is_specimen[n] == 0 || frame.depth.counts[n] == 0) continue;
-      const double z = frame.depth_unit_mm * frame.depth.counts[n];
-      cloud.emplace_back((u - frame.camera.cx) / frame.camera.focal_px * z,
-                         (v - frame.camera.cy) / frame.camera.focal_px * z, z);
+      cloud.push_back(frame.depth_unit_mm * frame.depth.counts[n] * ray_of(frame.camera, u, v));
     }
   }
   return cloud;

@@ -1,6 +1,7 @@
 #include "laboratory/virtual_specimen.hpp"
 
 #include <incise/bench_studies/planned_bench_cut.hpp>
+#include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/input_file.hpp>
@@ -124,8 +125,7 @@ steps::StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const
   result["mean_abs_error_mm"] = is_good ? truth_of(body, made.cut).at("mean_abs_error_mm") : nlohmann::ordered_json();
   result["passes_mm"] = nlohmann::ordered_json::array();
   for (const CompensationPass& pass : made.correction.passes)
-    result["passes_mm"].push_back(pass.mean_abs_error_mm ? nlohmann::ordered_json(*pass.mean_abs_error_mm)
-                                                         : nlohmann::ordered_json());
+    result["passes_mm"].push_back(to_json(pass.mean_abs_error_mm));
   result["wall_s"] = context.wall_s();
   write_json(request.output, result);
   result_of.is_acceptable = is_good;

@@ -21,7 +21,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <mutex>
@@ -52,14 +51,10 @@ std::vector<RivalPath> rivals_of(const ExperimentSettings& settings) {
   return settings.with_paper_pass ? std::vector{RivalPath::PaperPass} : std::vector<RivalPath>{};
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 ExperimentJson settings_json(const ExperimentSettings& settings) {
   return {{"bench", settings.bench},
           {"specimens", settings.specimens},
-          {"outside", settings.outside ? ExperimentJson(*settings.outside) : ExperimentJson(nullptr)},
+          {"outside", to_json(settings.outside)},
           {"quick", settings.is_quick},
           {"rivals", settings.with_rivals},
           {"paper_pass", settings.with_paper_pass},
@@ -73,9 +68,7 @@ ExperimentJson settings_json(const ExperimentSettings& settings) {
 }
 
 ExperimentJson comparison_json(const PathComparison& paths) {
-  const std::optional<std::string>& best = paths.best_without_simulation;
-  return {{"rivals", paths_json(paths)},
-          {"best_without_simulation", best ? ExperimentJson(*best) : ExperimentJson(nullptr)}};
+  return {{"rivals", paths_json(paths)}, {"best_without_simulation", to_json(paths.best_without_simulation)}};
 }
 
 /// What the calibration's data say: estimates and sentences, without the posterior's samples. Null without a fit.
@@ -233,7 +226,7 @@ class Experiment {
 };
 
 ExperimentJson Experiment::run() {
-  const auto start = std::chrono::steady_clock::now();
+  const steps::StepContext whole{context_, workers_, monitor_};
   claim_folder();
   remove_summaries();
   run_trials(TrialRole::Calibrate, TrialRole::Calibrate);
@@ -246,8 +239,7 @@ ExperimentJson Experiment::run() {
     AtomicFolder folder(root_ / "advice");
     write_json(folder.path() / "advice.json", advice);
     draw_advice(folder.path(), advice);
-    write_manifest(folder.path(),
-                   steps::manifest_of(context_, settings_json(settings_).dump(), {}, seconds_since(start)));
+    write_manifest(folder.path(), steps::manifest_of(context_, settings_json(settings_).dump(), {}, whole.wall_s()));
     folder.commit();
   }
   write_commands();
@@ -270,14 +262,12 @@ ExperimentJson Experiment::run() {
   }
   if (settings_.with_known_physics) result["known_physics"] = known_physics_json(trials_);
   result["advice"] = advice;
-  result["calibration"] =
-      calibration_.is_object() ? calibration_.value("chosen", ExperimentJson()) : ExperimentJson(nullptr);
+  result["calibration"] = json_part(calibration_, "/chosen");
   result["fit"] = fit_summary(calibration_);
   result["left_out_of_calibration"] =
       calibration_.is_object() ? calibration_.value("left_out", ExperimentJson::array()) : ExperimentJson::array();
-  result["specimens_test"] =
-      comparison_.is_object() ? comparison_.value("specimens", ExperimentJson()) : ExperimentJson(nullptr);
-  result["table_1"] = table_1_.is_object() ? table_1_.value("rows", ExperimentJson()) : ExperimentJson(nullptr);
+  result["specimens_test"] = json_part(comparison_, "/specimens");
+  result["table_1"] = json_part(table_1_, "/rows");
   result["table_2"] = table_2_json(trials_);
   result["tested_specimens"] = ExperimentJson::array();
   for (const TestedSpecimen& specimen : tested) result["tested_specimens"].push_back(to_json(specimen));
@@ -304,7 +294,7 @@ ExperimentJson Experiment::run() {
                      {"machine", machine_description(), ""}};
   write_report(page, root_ / "report.html");
   result["report"] = (root_ / "report.html").string();
-  result["wall_s"] = seconds_since(start);
+  result["wall_s"] = whole.wall_s();
   write_manifest(root_,
                  steps::manifest_of(context_, settings_json(settings_).dump(), {}, result["wall_s"].get<double>()));
   write_json(root_ / "study.json", result);

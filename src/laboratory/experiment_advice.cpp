@@ -21,12 +21,12 @@ bool is_advice(const AdviceJson& assessment) {
 }
 
 std::optional<double> number_at(const AdviceJson& assessment, const char* pointer) {
-  const AdviceJson found = assessment.value(AdviceJson::json_pointer(pointer), AdviceJson());
+  const AdviceJson found = json_part(assessment, pointer);
   return found.is_number() ? std::optional(found.get<double>()) : std::nullopt;
 }
 
 std::optional<Interval> interval_at(const AdviceJson& assessment, const std::string& pointer) {
-  const AdviceJson ends = assessment.value(AdviceJson::json_pointer(pointer), AdviceJson());
+  const AdviceJson ends = json_part(assessment, pointer.c_str());
   if (!ends.is_array()) return std::nullopt;
   return Interval{ends.at(0).get<double>(), ends.at(1).get<double>()};
 }
@@ -51,23 +51,16 @@ double stated(const std::optional<double>& probability) {
 }
 
 using StatedProbability = std::optional<double> AdvisedSpecimen::*;
+using WhetherWorse = std::optional<bool> (AdvisedSpecimen::*)() const;
 
-std::vector<Forecast> forecasts_with_pull(const std::vector<AdvisedSpecimen>& specimens, bool is_outside_alone,
-                                          StatedProbability key = &AdvisedSpecimen::p_worse) {
+std::vector<Forecast> forecasts_of(const std::vector<AdvisedSpecimen>& specimens, bool is_outside_alone,
+                                   StatedProbability key = &AdvisedSpecimen::p_worse,
+                                   WhetherWorse is_worse = &AdvisedSpecimen::is_worse) {
   std::vector<Forecast> forecasts;
   for (const AdvisedSpecimen& specimen : specimens) {
     if (is_outside_alone && specimen.role != TrialRole::Outside) continue;
-    if (const std::optional<bool> worse = specimen.is_worse())
+    if (const std::optional<bool> worse = (specimen.*is_worse)())
       forecasts.push_back({stated(specimen.*key), *worse, specimen.series});
-  }
-  return forecasts;
-}
-
-std::vector<Forecast> forecasts_without_pull(const std::vector<AdvisedSpecimen>& specimens) {
-  std::vector<Forecast> forecasts;
-  for (const AdvisedSpecimen& specimen : specimens) {
-    if (const std::optional<bool> worse = specimen.is_worse_without_pull())
-      forecasts.push_back({stated(specimen.p_worse_without_pull), *worse, specimen.series});
   }
   return forecasts;
 }
@@ -283,15 +276,16 @@ AdviceJson advice_scores(const std::vector<AdvisedSpecimen>& specimens) {
   json["advised"] = specimens.size();
   json["worse"] = std::count_if(specimens.begin(), specimens.end(),
                                 [](const AdvisedSpecimen& s) { return s.is_worse().value_or(false); });
-  json["auc"] = auc_json(forecasts_with_pull(specimens, false));
-  json["auc_outside_alone"] = auc_json(forecasts_with_pull(specimens, true));
+  json["auc"] = auc_json(forecasts_of(specimens, false));
+  json["auc_outside_alone"] = auc_json(forecasts_of(specimens, true));
   for (const auto& [name, part] : {std::pair{"p_worse_if_alike", &AdvisedSpecimen::p_worse_if_alike},
                                    std::pair{"p_worse_if_unlike", &AdvisedSpecimen::p_worse_if_unlike},
                                    std::pair{"p_unlike", &AdvisedSpecimen::p_unlike}}) {
-    json["auc_of"][name] = auc_json(forecasts_with_pull(specimens, false, part));
-    json["auc_of_outside_alone"][name] = auc_json(forecasts_with_pull(specimens, true, part));
+    json["auc_of"][name] = auc_json(forecasts_of(specimens, false, part));
+    json["auc_of_outside_alone"][name] = auc_json(forecasts_of(specimens, true, part));
   }
-  json["auc_without_pull"] = auc_json(forecasts_without_pull(specimens));
+  json["auc_without_pull"] = auc_json(
+      forecasts_of(specimens, false, &AdvisedSpecimen::p_worse_without_pull, &AdvisedSpecimen::is_worse_without_pull));
   json["close_margin"] = close_margin_json(specimens);
   json["intervals"] = intervals_json(specimens);
   json["specimens"] = AdviceJson::array();

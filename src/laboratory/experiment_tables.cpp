@@ -1,5 +1,6 @@
 #include "laboratory/experiment_tables.hpp"
 
+#include <incise/core/described_json.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/report/number_text.hpp>
 
@@ -26,11 +27,6 @@ constexpr Measure kMeasures[] = {{"mean_abs_error_mm", "/abs_error_mm/mean"},
                                  {"centroid_shift_mm", "/centroid_shift_mm"},
                                  {"close_margin_fraction", "/close_margin/fraction"}};
 
-TableJson measure_at(const TableJson& measures, const char* pointer) {
-  const TableJson::json_pointer at(pointer);
-  return measures.contains(at) ? measures.at(at) : TableJson(nullptr);
-}
-
 TableJson row_of(const Trial& trial, std::string_view cut_name, const TrialCut& cut) {
   TableJson row;
   row["specimen"] = trial.name;
@@ -38,14 +34,13 @@ TableJson row_of(const Trial& trial, std::string_view cut_name, const TrialCut& 
   row["role"] = to_string(trial.role);
   row["kind"] = trial.kind.empty() ? TableJson(nullptr) : TableJson(trial.kind);
   row["cut"] = cut_name;
-  row["outcome"] = cut.measured ? measure_at(cut.measured->measures, "/outcome")
+  row["outcome"] = cut.measured ? json_part(cut.measured->measures, "/outcome")
                                 : TableJson(cut.is_made ? "no_closed_ring" : "not_cut");
   for (const Measure& measure : kMeasures)
-    row[measure.column] = cut.measured ? measure_at(cut.measured->measures, measure.pointer) : TableJson(nullptr);
+    row[measure.column] = cut.measured ? json_part(cut.measured->measures, measure.pointer) : TableJson(nullptr);
   row["stretch_force_n"] = trial.stretch_force_n;
-  row["registration_rmse_mm"] =
-      trial.registration_rmse_mm ? TableJson(*trial.registration_rmse_mm) : TableJson(nullptr);
-  row["advice"] = trial.assessment.is_object() ? measure_at(trial.assessment, "/advice") : TableJson(nullptr);
+  row["registration_rmse_mm"] = to_json(trial.registration_rmse_mm);
+  row["advice"] = json_part(trial.assessment, "/advice");
   const std::string& ended_at = trial.ended_at.empty() ? cut.ended_at : trial.ended_at;
   row["ended_at"] = ended_at.empty() ? TableJson(nullptr) : TableJson(ended_at);
   return row;
@@ -61,6 +56,11 @@ std::string csv_cell(const TableJson& value) {
 }
 
 }  // namespace
+
+TableJson json_part(const TableJson& json, const char* pointer) {
+  const TableJson::json_pointer at(pointer);
+  return json.contains(at) ? json.at(at) : TableJson(nullptr);
+}
 
 std::string cell(const TableJson& value, std::string_view column) {
   if (value.is_null()) return "";
@@ -137,8 +137,7 @@ TableJson known_physics_json(const std::vector<Trial>& trials) {
   double sum = 0.0;
   std::size_t count = 0;
   for (const Trial& trial : trials) {
-    const TableJson mean =
-        trial.known_physics.is_object() ? measure_at(trial.known_physics, "/mean_abs_error_mm") : TableJson(nullptr);
+    const TableJson mean = json_part(trial.known_physics, "/mean_abs_error_mm");
     if (!mean.is_number() || !trial.planned.measured || !trial.corrected.measured) continue;
     sum += mean.get<double>();
     ++count;
@@ -170,8 +169,7 @@ TableJson assessments_json(const std::vector<Trial>& trials) {
                             "p_unlike", "p_close_margin", "distances"})
       entry[key] = trial.assessment.value(key, TableJson());
     const bool is_pair = trial.planned.measured && trial.corrected.measured;
-    entry["accepted"] =
-        trial.compensation.is_object() ? trial.compensation.value("accepted", TableJson()) : TableJson(nullptr);
+    entry["accepted"] = json_part(trial.compensation, "/accepted");
     entry["gain_mm"] =
         is_pair ? TableJson(*mean_error_mm(trial.planned) - *mean_error_mm(trial.corrected)) : TableJson(nullptr);
     list.push_back(std::move(entry));

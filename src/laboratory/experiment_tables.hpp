@@ -84,6 +84,9 @@ struct Trial {
   std::vector<std::string> commands;
 };
 
+/// Returns a part of a JSON value; null if there is none, or no such value.
+[[nodiscard]] nlohmann::ordered_json json_part(const nlohmann::ordered_json& json, const char* pointer);
+
 /// Returns every step that refused this specimen or a cut of it.
 [[nodiscard]] std::vector<std::string> refusals_of(const Trial& trial);
 

@@ -95,7 +95,7 @@ PowerJson json_of(const PowerResult& result) {
   json["virtual"] = true;
   json["note"] = kVirtualCuts;
   json.update(to_json(result.series));
-  json["speed_estimate"] = result.speed ? to_json(*result.speed) : PowerJson(nullptr);
+  json["speed_estimate"] = to_json(result.speed);
   json["cuts_made"] = result.series.made;
   json["wall_s"] = result.wall_s;
   return json;

@@ -330,9 +330,7 @@ SecondCut SpecimenTrial::cut_again(const std::filesystem::path& file, const std:
                   }});
   if (corrected.end == StepEnd::Done || (corrected.end == StepEnd::NotAcceptable && has_path(corrected.result)))
     return {corrected.result, cut(path, tag)};
-  TrialCut none;
-  none.ended_at = refusal_of(tag + "_compensate", corrected);
-  return {corrected.result, none};
+  return {corrected.result, {.ended_at = refusal_of(tag + "_compensate", corrected)}};
 }
 
 TrialCut SpecimenTrial::cut_robustly(const std::filesystem::path& file, const steps::CalibratedRequest& known,
@@ -355,9 +353,8 @@ TrialCut SpecimenTrial::cut_robustly(const std::filesystem::path& file, const st
   // The default correction of the same run may be refused, and this path may still be sound.
   const StudyJson robust = found.result.is_object() ? found.result.value("robust", StudyJson()) : StudyJson();
   if (robust.is_object() && robust.at("outcome") == to_string(RobustOutcome::Met)) return cut(path, tag);
-  TrialCut none;
-  none.ended_at = found.end == StepEnd::Done ? tag + "_compensate: not found" : refusal_of(tag + "_compensate", found);
-  return none;
+  const std::string step = tag + "_compensate";
+  return {.ended_at = found.end == StepEnd::Done ? step + ": not found" : refusal_of(step, found)};
 }
 
 }  // namespace incise::laboratory

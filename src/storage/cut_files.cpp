@@ -176,14 +176,11 @@ void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, 
     const std::string name = fmt::format("frames/frame_{:04}.vtu", i);
     write_vtu(folder / name, live_mesh(tissue, frame));
     series.push_back({frame.time_s, name});
-    const Vec3& tip = frame.tool.tip_mm;
-    const Vec3& axis = frame.tool.axis;
-    const Vec3& heading = frame.tool.heading;
     tools.push_back({{"time_s", frame.time_s},
                      {"is_tool_in", frame.is_tool_in},
-                     {"tip_mm", {tip.x(), tip.y(), tip.z()}},
-                     {"axis", {axis.x(), axis.y(), axis.z()}},
-                     {"heading", {heading.x(), heading.y(), heading.z()}}});
+                     {"tip_mm", to_json(frame.tool.tip_mm)},
+                     {"axis", to_json(frame.tool.axis)},
+                     {"heading", to_json(frame.tool.heading)}});
   }
   write_pvd(folder / "frames.pvd", series);
   write_json(folder / "frames" / "tool.json", {{"frames", tools}});

@@ -13,10 +13,7 @@ void write_robust(RunFolder& run, const RobustCorrection& robust, const std::fil
   require_replaceable(folder);
   AtomicFolder target(folder);
   const RobustCompensation& chosen = robust.compensation;
-  ToolPath path = chosen.path;
-  path.specimen_id = run.specimen_id();
-  path.is_virtual = run.case_file().settings.is_virtual;
-  write_tool_path(target.path() / "path.json", path);
+  write_tool_path(target.path() / "path.json", run.with_specimen(chosen.path));
   write_contour_vtp(target.path() / "path.vtp", entry_contour(chosen.path));
   nlohmann::ordered_json json = to_json(robust);
   json["calibration_sha256"] = sha256_of_file(calibration);

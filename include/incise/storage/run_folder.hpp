@@ -99,11 +99,12 @@ class RunFolder : public Inputs, public ProductSink {
   /// @throws DataError if an input cannot be read.
   void remove_what_is_out_of_date(Stage until, Monitor& monitor);
 
+  /// Returns a path that states the case's specimen.
+  [[nodiscard]] ToolPath with_specimen(ToolPath path);
   /// Writes manifest.json into an output folder of this run. @param verdict  of the run; null: none
   void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);
 
  private:
-  [[nodiscard]] ToolPath with_specimen(ToolPath path);
   [[nodiscard]] std::string input_hash(const std::filesystem::path& path);
   [[nodiscard]] Manifest manifest_now(double wall_s);
   /// Returns the key of everything that a verdict depends on beside its path.
