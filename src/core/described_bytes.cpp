@@ -12,19 +12,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "blocks lie in files as they lie in memory");
 
-std::size_t size_of(Block::Kind kind) {
-  switch (kind) {
-    case Block::Kind::Double:
-      return 8;
-    case Block::Kind::Float:
-    case Block::Kind::Int32:
-      return 4;
-    case Block::Kind::Int16:
-      return 2;
-    case Block::Kind::UInt8:
-      return 1;
-  }
-  return 1;
+std::size_t size_of(const Block& block) {
+  return block.count * with_numbers(block, [](const auto* number) { return sizeof *number; });
 }
 
 template <class Number>
@@ -73,7 +62,7 @@ void ByteWriter::choice(const Field&, std::size_t& value, Names) {
 }
 
 void ByteWriter::block(const Field&, const Block& block) {
-  bytes_.append(static_cast<const char*>(block.data), block.count * size_of(block.kind));
+  bytes_.append(static_cast<const char*>(block.data), size_of(block));
 }
 
 std::string_view ByteReader::take(const Field& field, std::size_t count) {
@@ -124,7 +113,7 @@ void ByteReader::choice(const Field& field, std::size_t& value, Names names) {
 }
 
 void ByteReader::block(const Field& field, const Block& block) {
-  const std::string_view found = take(field, block.count * size_of(block.kind));
+  const std::string_view found = take(field, size_of(block));
   if (!found.empty()) std::memcpy(block.data, found.data(), found.size());
 }
 

@@ -22,23 +22,6 @@ std::string shown(const Json& value) {
   return text;
 }
 
-/// Calls `use` with the block's numbers, typed.
-template <class Use>
-void with_numbers(const Block& block, const Use& use) {
-  switch (block.kind) {
-    case Block::Kind::Double:
-      return use(static_cast<double*>(block.data));
-    case Block::Kind::Float:
-      return use(static_cast<float*>(block.data));
-    case Block::Kind::Int32:
-      return use(static_cast<std::int32_t*>(block.data));
-    case Block::Kind::Int16:
-      return use(static_cast<std::int16_t*>(block.data));
-    case Block::Kind::UInt8:
-      return use(static_cast<std::uint8_t*>(block.data));
-  }
-}
-
 }  // namespace
 
 Json& JsonWriter::put(const Field& field, Json value) {

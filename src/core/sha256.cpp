@@ -17,8 +17,6 @@ Sha256::Sha256() : state_(std::make_unique<State>()) {
     throw Error("SHA-256 is not available");
 }
 Sha256::~Sha256() = default;
-Sha256::Sha256(Sha256&&) noexcept = default;
-Sha256& Sha256::operator=(Sha256&&) noexcept = default;
 
 void Sha256::add(const void* data, std::size_t size) {
   if (EVP_DigestUpdate(state_->context.get(), data, size) != 1) throw Error("SHA-256 failed");

@@ -68,6 +68,24 @@ struct Block {
   bool is_direction = false;  ///< a vector whose length does not matter: see core/direction.hpp
 };
 
+/// Calls `use` with a pointer to a block's numbers, typed. @returns its result
+template <class Use>
+auto with_numbers(const Block& block, const Use& use) {
+  switch (block.kind) {
+    case Block::Kind::Double:
+      return use(static_cast<double*>(block.data));
+    case Block::Kind::Float:
+      return use(static_cast<float*>(block.data));
+    case Block::Kind::Int32:
+      return use(static_cast<std::int32_t*>(block.data));
+    case Block::Kind::Int16:
+      return use(static_cast<std::int16_t*>(block.data));
+    case Block::Kind::UInt8:
+      break;
+  }
+  return use(static_cast<std::uint8_t*>(block.data));
+}
+
 class Visitor;
 
 /// Walks over every field of a value. A type is described once, beside its declaration:
@@ -97,7 +115,7 @@ class Visitor {
   /// @param size  number of items that the value has now.  @param item_bytes  least size of an item, bytes.
   /// @returns the number of items to visit, kUnchanged or kEveryKind
   virtual std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) = 0;
-  virtual void end_list() = 0;
+  virtual void end_list() { end(); }
   /// Called before a value that may be absent.
   /// @returns whether it is present. A visitor that only shows values may return true for an absent one and then
   /// receives a default

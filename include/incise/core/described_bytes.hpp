@@ -28,7 +28,6 @@ class ByteWriter : public Visitor {
   void begin(const Field&) override {}
   void end() override {}
   std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) override;
-  void end_list() override {}
   bool optional(const Field& field, bool is_there) override;
   void number(const Field& field, double& value, const Range& range) override;
   void integer(const Field& field, std::int64_t& value, const Range& range) override;
@@ -50,7 +49,6 @@ class ByteReader : public Visitor {
   void begin(const Field&) override {}
   void end() override {}
   std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) override;
-  void end_list() override {}
   bool optional(const Field& field, bool is_there) override;
   void number(const Field& field, double& value, const Range& range) override;
   void integer(const Field& field, std::int64_t& value, const Range& range) override;

@@ -34,7 +34,6 @@ class JsonWriter : public Visitor {
   void begin(const Field& field) override;
   void end() override { open_.pop_back(); }
   std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) override;
-  void end_list() override { open_.pop_back(); }
   bool optional(const Field& field, bool is_there) override;
   void number(const Field& field, double& value, const Range& range) override;
   void integer(const Field& field, std::int64_t& value, const Range& range) override;

@@ -35,7 +35,6 @@ class DescriptionCheck : public Visitor {
   void begin(const Field& field) override { path_.push_back({place_of(field)}); }
   void end() override { path_.pop_back(); }
   std::size_t begin_list(const Field& field, std::size_t size, std::size_t item_bytes) override;
-  void end_list() override { path_.pop_back(); }
   bool optional(const Field&, bool is_there) override { return is_there; }
   void number(const Field& field, double& value, const Range& range) override;
   void integer(const Field& field, std::int64_t& value, const Range& range) override;

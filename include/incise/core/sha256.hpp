@@ -12,8 +12,6 @@ class Sha256 {
  public:
   Sha256();
   ~Sha256();
-  Sha256(Sha256&&) noexcept;
-  Sha256& operator=(Sha256&&) noexcept;
   void add(const void* data, std::size_t size);
   /// Returns the hash of all bytes added, as 64 lower-case hex digits. Call it once, after the last `add`.
   [[nodiscard]] std::string hex_digits();
