@@ -3,7 +3,6 @@
 
 #include <incise/bench_kit/pictures.hpp>
 #include <incise/core/error.hpp>
-#include <incise/core/units.hpp>
 
 #include <fmt/format.h>
 

@@ -7,8 +7,6 @@
 #include <incise/geometry/morphology.hpp>
 #include <incise/geometry/raster.hpp>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

@@ -5,7 +5,6 @@
 #include <incise/geometry/types.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 

@@ -9,9 +9,7 @@ namespace {
 /// Cuts along a path in the specimen's frame, as the specimen's arm would.
 BenchCut cut_along(const BenchBody& body, ToolPath path, const PlanSettings& plan, Workers& workers, Monitor& monitor) {
   path.frame = PathFrame::Robot;  // the robot's base frame is taken as the specimen's frame
-  ProgramSettings settings;
-  settings.plunge_speed_mm_s = plan.speed_mm_s;
-  const RobotProgram program = make_program(path, settings);
+  const RobotProgram program = make_program(path, {.plunge_speed_mm_s = plan.speed_mm_s});
   const std::vector<TipPose> course = tip_course(asked_course(program), body.specimen, Mat4::Identity());
   return cut_specimen(body, course, plan.power_w, workers, monitor);
 }

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -75,11 +74,7 @@ class PowerSeriesRunner {
   }
 
   static PowerCut asked(const PowerSubject& subject, double power_w, double speed_mm_s) {
-    PowerCut cut;
-    cut.specimen = subject.name;
-    cut.power_w = power_w;
-    cut.speed_mm_s = speed_mm_s;
-    return cut;
+    return {.specimen = subject.name, .power_w = power_w, .speed_mm_s = speed_mm_s};
   }
 
   /// @param cuts  equally many for each subject, subject by subject.
@@ -138,9 +133,7 @@ class PowerSeriesRunner {
       cut.problem = "the specimen could not be stretched";
       return;
     }
-    PlanSettings plan;
-    plan.power_w = cut.power_w;
-    plan.speed_mm_s = cut.speed_mm_s;
+    const PlanSettings plan{.speed_mm_s = cut.speed_mm_s, .power_w = cut.power_w};
     Workers alone(1);
     try {
       note(*body, cut_as_planned(*body, plan, alone, monitor), cut);

@@ -35,7 +35,11 @@ struct HiddenParameter {
 };
 
 /// Returns the seed of a separate random stream for each name (FNV-1a), so a new parameter does not change the others.
-[[nodiscard]] std::uint64_t stream_of(std::uint64_t seed, std::string_view name);
+[[nodiscard]] inline std::uint64_t stream_of(std::uint64_t seed, std::string_view name) {
+  std::uint64_t hash = 1469598103934665603ULL;
+  for (const char c : name) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return hash ^ (seed * 0x9E3779B97F4A7C15ULL);
+}
 
 /// Returns a random value of the parameter. Normal and lognormal draws are repeated until one is within the limits; a
 /// uniform draw is not checked. @pre the limits contain a part of the distribution; for a uniform one, all of it.

@@ -8,7 +8,6 @@
 #include <incise/core/workers.hpp>
 #include <incise/virtual_bench/body.hpp>
 
-#include <optional>
 #include <string>
 #include <vector>
 
