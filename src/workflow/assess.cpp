@@ -18,35 +18,27 @@ constexpr UsualSpread kUsualResidual{.sd = 0.3, .is_logarithmic = true, .is_bett
 constexpr const char* kModulusName = "youngs_modulus_kpa";
 constexpr UsualSpread kUsualScale{.sd = 0.01, .is_logarithmic = true};
 
-/// Collects the distances of this specimen from the calibration's specimens.
-class RangeCheck {
- public:
-  explicit RangeCheck(Assessment& assessment) : assessment_(assessment) {}
-
-  void compare(const char* name, double value, const std::vector<double>& calibrated, const UsualSpread& usual) {
-    if (calibrated.empty()) {
-      assessment_.notes.push_back(
-          fmt::format("{}: the calibration states it for no specimen, so its distance is not known", name));
-      return;
-    }
-    assessment_.evidence.distances.push_back(distance_from(name, value, calibrated, usual));
+/// Adds the distance of this specimen from the calibration's specimens in one quantity.
+void add_distance(const char* name, double value, const std::vector<double>& calibrated, const UsualSpread& usual,
+                  Assessment& assessment) {
+  if (calibrated.empty()) {
+    assessment.notes.push_back(
+        fmt::format("{}: the calibration states it for no specimen, so its distance is not known", name));
+    return;
   }
-
- private:
-  Assessment& assessment_;
-};
+  assessment.evidence.distances.push_back(distance_from(name, value, calibrated, usual));
+}
 
 void compare_registration(const AssessmentRequest& request, Assessment& assessment) {
   if (!(request.registration.rmse_mm > 0.0)) return;  // none was found, or the surface was registered to itself
-  RangeCheck range(assessment);
-  range.compare("registration_rmse_mm", request.registration.rmse_mm, request.calibrated.registration_rmse_mm,
-                kUsualResidual);
-  range.compare("registration_scale", request.registration.scale, request.calibrated.registration_scale, kUsualScale);
+  add_distance("registration_rmse_mm", request.registration.rmse_mm, request.calibrated.registration_rmse_mm,
+               kUsualResidual, assessment);
+  add_distance("registration_scale", request.registration.scale, request.calibrated.registration_scale, kUsualScale,
+               assessment);
 }
 
 void compare_stiffness(const AssessmentRequest& request, const ScenarioSet& scenarios, const TissueModel& model,
                        Assessment& assessment) {
-  RangeCheck range(assessment);
   if (!request.scenarios.stretch_force_n) {
     assessment.notes.push_back(
         fmt::format("the pull was not measured: the case's modulus of {:.3g} kPa is assumed, with an uncertainty of "
@@ -54,9 +46,10 @@ void compare_stiffness(const AssessmentRequest& request, const ScenarioSet& scen
                     scenarios.reference_kpa, scenarios.own_stiffness_sd));
     return;
   }
-  range.compare(kModulusName, scenarios.reference_kpa, request.calibrated.youngs_modulus_kpa, kUsualStiffness);
-  range.compare("compliance_mm_n", stretch_mm(model) / *request.scenarios.stretch_force_n,
-                request.calibrated.compliance_mm_n, kUsualCompliance);
+  add_distance(kModulusName, scenarios.reference_kpa, request.calibrated.youngs_modulus_kpa, kUsualStiffness,
+               assessment);
+  add_distance("compliance_mm_n", stretch_mm(model) / *request.scenarios.stretch_force_n,
+               request.calibrated.compliance_mm_n, kUsualCompliance, assessment);
 }
 
 /// Why there is no correction to assess; empty: there is one.

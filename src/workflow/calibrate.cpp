@@ -1,6 +1,7 @@
 #include "workflow/calibration_body.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/evaluation/contour_errors.hpp>
 #include <incise/evaluation/error_profile.hpp>
 
@@ -87,11 +88,9 @@ class CalibrationRunner {
       specimen.moved_mean_mm =
           std::accumulate(moved_mm.begin(), moved_mm.end(), 0.0) / static_cast<double>(moved_mm.size());
     // Detects a mirrored picture now, not after minutes of simulation.
-    PictureMatchSettings rough;
-    rough.edge_sd_mm = kEdgeBeforeCutSdMm;
-    const PictureMatch match = match_picture(subject.photographed.tumor_edge, subject.photographed.approach,
-                                             bodies_.back()->tumor_edge(), subject.settings.plan.approach, rough);
-    refuse_objection(subject, match);
+    refuse_objection(subject, match_picture(subject.photographed.tumor_edge, subject.photographed.approach,
+                                            bodies_.back()->tumor_edge(), subject.settings.plan.approach,
+                                            {.edge_sd_mm = kEdgeBeforeCutSdMm}));
     calibration_.is_virtual = calibration_.is_virtual || subject.settings.is_virtual;
     calibration_.specimens.push_back(std::move(specimen));
   }
@@ -499,6 +498,22 @@ class CalibrationRunner {
 };
 
 }  // namespace
+
+std::vector<Problem> validate(const CalibrationRequest& r) {
+  std::vector<Problem> violations = problems_of(r);
+  const Expect expect(violations);
+  for (const double drag : r.second_drag_lengths_mm) {
+    const bool is_among =
+        std::find(r.drag_lengths_mm.begin(), r.drag_lengths_mm.end(), drag) != r.drag_lengths_mm.end();
+    expect(is_among, "second_drag_lengths_mm", drag, "one of drag_lengths_mm");
+  }
+  expect(r.second_stiffness != 1.0, "second_stiffness", r.second_stiffness, "a number other than 1");
+  if (r.speeds_mm_s.empty() || r.dullnesses.empty())
+    violations.push_back({"speeds_mm_s", "none", "at least one speed and one dullness"});
+  if (r.drag_lengths_mm.size() < 2)
+    violations.push_back({"drag_lengths_mm", fmt::format("{} values", r.drag_lengths_mm.size()), "at least 2"});
+  return violations;
+}
 
 CacheKey calibration_run_key(const std::string& held, const RunSetting& setting) {
   return CacheKey("calibration_run").add_text(held).add(setting);

@@ -33,6 +33,13 @@ TetMesh stiffened(TetMesh mesh, double factor) {
   return mesh;
 }
 
+void require_stretched(const StaticResult& stretched, double stiffness_of_case) {
+  if (stretched.outcome == Outcome::Success) return;
+  throw CaseError("case", "specimen",
+                  fmt::format("{} (at {:.3g} times its stiffness)", explain_stretch(stretched), stiffness_of_case),
+                  "a specimen that can be stretched");
+}
+
 }  // namespace
 
 Case with_setting(const Case& settings, const RunSetting& setting) {
@@ -114,13 +121,6 @@ std::vector<double> CalibrationBody::moved_mm() const {
 RingCovariates CalibrationBody::ring() const {
   return ring_covariates(subject_.settings, *study_.model, study_.stretched->state.positions, tumor_edge(),
                          subject_.settings.material.youngs_modulus_kpa * reference_stiffness());
-}
-
-void CalibrationBody::require_stretched(const StaticResult& stretched, double stiffness_of_case) const {
-  if (stretched.outcome == Outcome::Success) return;
-  throw CaseError("case", "specimen",
-                  fmt::format("{} (at {:.3g} times its stiffness)", explain_stretch(stretched), stiffness_of_case),
-                  "a specimen that can be stretched");
 }
 
 HeldBody CalibrationBody::make(double stiffness_of_case, Workers& workers, Monitor& monitor) {

@@ -48,7 +48,6 @@ class CalibrationBody {
 
  private:
   [[nodiscard]] HeldBody make(double stiffness_of_case, Workers& workers, Monitor& monitor);
-  void require_stretched(const StaticResult& stretched, double stiffness_of_case) const;
 
   const CalibrationSubject& subject_;
   [[nodiscard]] std::string digest_of_all() const;

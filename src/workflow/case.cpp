@@ -12,6 +12,10 @@ namespace {
 constexpr const char* kWhere = "case";
 constexpr const char* kLabelArray = "label";
 constexpr const char* kToughnessArray = "toughness";
+// Of the default hold.
+constexpr double kClampMm = 15.0;    // grip of a specimen holder's posterior clamp
+constexpr double kSutureMm = 10.0;   // round the retraction suture
+constexpr double kStretchMm = 20.0;  // paper II-A
 
 /// Names of the mesh's cell arrays for a message: "'a', 'b'".
 std::string cell_arrays(const TetMesh& mesh) {
@@ -183,15 +187,6 @@ std::vector<double> toughness_of(const TetMesh& mesh, const ToughnessVariation& 
   }
   return toughness;
 }
-
-namespace {
-
-// Of the default hold.
-constexpr double kClampMm = 15.0;    // grip of a specimen holder's posterior clamp
-constexpr double kSutureMm = 10.0;   // round the retraction suture
-constexpr double kStretchMm = 20.0;  // paper II-A
-
-}  // namespace
 
 std::string default_hold_in_words() {
   return fmt::format(

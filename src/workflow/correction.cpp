@@ -14,7 +14,6 @@
 #include <cmath>
 
 namespace incise {
-
 namespace {
 
 constexpr std::string_view kNoSuccess = "is open, touches the tumour's edge or did not converge";
@@ -116,26 +115,42 @@ std::string in_words(int pass, const std::optional<PathErrors>& errors) {
                      sum / static_cast<double>(errors->signed_error_mm.size()));
 }
 
+/// Returns why no pass replaced the first cut although one came nearer; empty if none did.
+std::string why_none_was_kept(const ConvergedCompensation& done) {
+  const CompensationPass& first = done.passes.front();
+  const CompensationPass* nearest = nullptr;
+  for (const CompensationPass& pass : done.passes) {
+    if (!pass.mean_abs_error_mm || (first.mean_abs_error_mm && *pass.mean_abs_error_mm >= *first.mean_abs_error_mm))
+      continue;
+    if (nearest == nullptr || *pass.mean_abs_error_mm < *nearest->mean_abs_error_mm) nearest = &pass;
+  }
+  if (nearest == nullptr) return {};
+  const std::string worse =
+      nearest->open_layers > first.open_layers
+          ? fmt::format("leaves more layers open ({} instead of {})", nearest->open_layers, first.open_layers)
+      : nearest->is_success < first.is_success ? std::string(kNoSuccess)
+      : nearest->verdict > first.verdict
+          ? fmt::format("is {} instead of {}", to_string(nearest->verdict), to_string(first.verdict))
+          : fmt::format("falls {:.2f} mm short in depth instead of {:.2f} mm", nearest->shortfall_mm,
+                        first.shortfall_mm);
+  return fmt::format("; the pass that came nearest, with a mean |error| of {:.2f} mm, {}", *nearest->mean_abs_error_mm,
+                     worse);
+}
+
 }  // namespace
 
 SafeRegion safe_region(const Case& settings) {
-  SafeRegion region;
-  region.close_margin_mm = settings.close_margin_mm;
-  region.electrode_radius_mm = radius_mm(settings.tool);
-  region.approach = settings.plan.approach;
-  region.axis_mode = settings.plan.axis_mode;
-  region.rim_clearance_mm = settings.plan.rim_clearance_mm;
-  return region;
+  return {.close_margin_mm = settings.close_margin_mm,
+          .electrode_radius_mm = radius_mm(settings.tool),
+          .rim_clearance_mm = settings.plan.rim_clearance_mm,
+          .approach = settings.plan.approach,
+          .axis_mode = settings.plan.axis_mode};
 }
 
 std::vector<double> values_at_waypoints(const Case& settings, const std::vector<double>& sectors, const ToolPath& path,
                                         const Contour& tumor_edge) {
-  ProfileSettings profile;
-  profile.approach = settings.plan.approach;
-  profile.start_direction = settings.plan.start_direction;
-  Points places;
-  for (const Waypoint& waypoint : path.waypoints) places.push_back(waypoint.position_mm);
-  return values_at(sectors, places, tumor_edge, profile);
+  return values_at(sectors, entry_contour(path).points, tumor_edge,
+                   {.approach = settings.plan.approach, .start_direction = settings.plan.start_direction});
 }
 
 std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& cut, const Contour& tumor_edge,
@@ -161,16 +176,13 @@ std::optional<PathErrors> path_errors(const Case& settings, const SimulatedCut& 
 
 Correction correct_as_paper(const Case& settings, const ToolPath& followed, const SimulatedCut& cut,
                             const Contour& tumor_edge, const SurfaceQuery& surface) {
-  CompensationSettings compensation;
-  compensation.target_mm = settings.plan.lateral_margin_mm;
-  compensation.close_margin_mm = settings.close_margin_mm;
-  compensation.electrode_radius_mm = radius_mm(settings.tool);
-  compensation.approach = settings.plan.approach;
-  compensation.axis_mode = settings.plan.axis_mode;
-  Correction correction;
-  correction.method = CompensationMethod::Paper;
-  correction.moves = compensate_paper(followed, *cut.incision.centerline, tumor_edge, surface, compensation);
-  return correction;
+  const CompensationSettings compensation{.target_mm = settings.plan.lateral_margin_mm,
+                                          .close_margin_mm = settings.close_margin_mm,
+                                          .electrode_radius_mm = radius_mm(settings.tool),
+                                          .approach = settings.plan.approach,
+                                          .axis_mode = settings.plan.axis_mode};
+  return {.method = CompensationMethod::Paper,
+          .moves = compensate_paper(followed, *cut.incision.centerline, tumor_edge, surface, compensation)};
 }
 
 Correction correct_by_profile(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
@@ -180,10 +192,7 @@ Correction correct_by_profile(const Case& settings, const ToolPath& followed, co
   for (double& offset : offset_mm) offset = -offset;
   ToolPath start = followed;
   start.tumor_edge = tumor_edge;
-  Correction correction;
-  correction.method = CompensationMethod::Profile;
-  correction.moves = shift_path(start, surface, offset_mm, safe_region(settings));
-  return correction;
+  return {.method = CompensationMethod::Profile, .moves = shift_path(start, surface, offset_mm, safe_region(settings))};
 }
 
 Correction correct_converging(const Case& settings, const ToolPath& followed, const Contour& tumor_edge,
@@ -214,32 +223,6 @@ Correction correct_converging(const Case& settings, const ToolPath& followed, co
   count_moves(moves);
   return correction;
 }
-
-namespace {
-
-/// Returns why no pass replaced the first cut although one came nearer; empty if none did.
-std::string why_none_was_kept(const ConvergedCompensation& done) {
-  const CompensationPass& first = done.passes.front();
-  const CompensationPass* nearest = nullptr;
-  for (const CompensationPass& pass : done.passes) {
-    if (!pass.mean_abs_error_mm || (first.mean_abs_error_mm && *pass.mean_abs_error_mm >= *first.mean_abs_error_mm))
-      continue;
-    if (nearest == nullptr || *pass.mean_abs_error_mm < *nearest->mean_abs_error_mm) nearest = &pass;
-  }
-  if (nearest == nullptr) return {};
-  const std::string worse =
-      nearest->open_layers > first.open_layers
-          ? fmt::format("leaves more layers open ({} instead of {})", nearest->open_layers, first.open_layers)
-      : nearest->is_success < first.is_success ? std::string(kNoSuccess)
-      : nearest->verdict > first.verdict
-          ? fmt::format("is {} instead of {}", to_string(nearest->verdict), to_string(first.verdict))
-          : fmt::format("falls {:.2f} mm short in depth instead of {:.2f} mm", nearest->shortfall_mm,
-                        first.shortfall_mm);
-  return fmt::format("; the pass that came nearest, with a mean |error| of {:.2f} mm, {}", *nearest->mean_abs_error_mm,
-                     worse);
-}
-
-}  // namespace
 
 std::string objection_to(const Case& settings, const Correction& correction, const SimulatedCut& first,
                          const SimulatedCut& corrected) {

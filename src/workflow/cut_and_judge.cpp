@@ -34,13 +34,18 @@ std::optional<std::string> why_no_deep_margin(const SimulatedCut& cut) {
 }
 
 EvaluationSettings evaluation_settings(const Case& settings, ContourKind contour) {
-  EvaluationSettings evaluation;
-  evaluation.contour = contour;
-  evaluation.lateral_margin_mm = settings.plan.lateral_margin_mm;
-  evaluation.electrode_radius_mm = radius_mm(settings.tool);
-  evaluation.close_margin_mm = settings.close_margin_mm;
-  evaluation.approach = settings.plan.approach;
-  return evaluation;
+  return {.contour = contour,
+          .lateral_margin_mm = settings.plan.lateral_margin_mm,
+          .electrode_radius_mm = radius_mm(settings.tool),
+          .close_margin_mm = settings.close_margin_mm,
+          .approach = settings.plan.approach};
+}
+
+/// Returns a layer's mid-line, lifted to the skin's height. @pre the layer has one.
+Contour lifted_midline(const Case& settings, const KerfLayer& layer) {
+  Contour lifted = *layer.centerline;
+  for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
+  return lifted;
 }
 
 /// Errors of a layer's mid-line against the same line as the mid-line on the skin, seen along the approach, at the
@@ -97,12 +102,6 @@ std::optional<double> line_to_edge_mm(const IncisionResult& incision, const Cont
 }
 
 }  // namespace
-
-Contour lifted_midline(const Case& settings, const KerfLayer& layer) {
-  Contour lifted = *layer.centerline;
-  for (Vec3& p : lifted.points) p -= layer.depth_mm * settings.plan.approach.normalized();
-  return lifted;
-}
 
 ContourErrors layer_line_errors(const Case& settings, const KerfLayer& layer, const Contour& tumor_edge) {
   const EvaluationSettings centerline = evaluation_settings(settings, ContourKind::Centerline);

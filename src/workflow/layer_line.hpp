@@ -10,7 +10,4 @@ namespace incise {
 /// @pre the layer has a mid-line.  @param tumor_edge  closed, mm.  @throws InvalidArgument as contour_errors.
 [[nodiscard]] ContourErrors layer_line_errors(const Case& settings, const KerfLayer& layer, const Contour& tumor_edge);
 
-/// Returns a layer's mid-line, lifted to the skin's height. @pre the layer has one.
-[[nodiscard]] Contour lifted_midline(const Case& settings, const KerfLayer& layer);
-
 }  // namespace incise

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 namespace incise {
@@ -21,10 +20,7 @@ Case by_inner_edge(const Case& settings) {
 }
 
 CalibrationSubject subject_of(const Case& settings, Inputs& inputs, Cache& cache, const ScenarioRequest& request) {
-  CalibrationSubject subject;
-  subject.settings = settings;
-  subject.inputs = &inputs;
-  subject.cache = &cache;
+  CalibrationSubject subject{.settings = settings, .inputs = &inputs, .cache = &cache};
   subject.photographed.stretch_force_n = request.stretch_force_n;
   return subject;
 }
@@ -131,13 +127,11 @@ class TissueCuts {
   }
 
   [[nodiscard]] RobustSettings robust_settings() const {
-    RobustSettings robust;
-    robust.region = safe_region(settings_);
-    robust.target_mm = settings_.plan.lateral_margin_mm - radius_mm(settings_.tool);
-    robust.kerf_allowance_mm = 0.0;  // an inner edge is where the tissue ends
-    robust.max_probability = request_.max_probability;
-    robust.seed = request_.seed;
-    return robust;
+    return {.region = safe_region(settings_),
+            .target_mm = settings_.plan.lateral_margin_mm - radius_mm(settings_.tool),
+            .kerf_allowance_mm = 0.0,  // an inner edge is where the tissue ends
+            .max_probability = request_.max_probability,
+            .seed = request_.seed};
   }
 
   [[nodiscard]] MeasureScenarios measure() {

@@ -33,10 +33,8 @@ std::string without_program(const Case& settings) {
 
 /// Makes the program. Speeds and places of a given path come from a person, so the path may be unsuitable.
 RobotProgram program_along(const ToolPath& path, const Case& settings, const Inputs& inputs) {
-  ProgramSettings motion;
-  motion.overlap_mm = settings.cut.overlap_mm;
   try {
-    return make_program(path, motion, arm_setup_of(settings));
+    return make_program(path, {.overlap_mm = settings.cut.overlap_mm}, arm_setup_of(settings));
   } catch (const InvalidArgument& error) {
     throw DataError(inputs.path_name(), "waypoints", error);
   }
@@ -62,8 +60,8 @@ CheckedProgram checked_program(const Case& settings, Inputs& inputs, const Study
 ProgramHeader header_of(const CheckedProgram& made, const Case& settings, const std::string& specimen_id,
                         const Run& run) {
   ProgramHeader provenance{{"made_by", fmt::format("incise {} ({})", version(), source_commit())},
-                           {"title", settings.title}};
-  provenance.emplace_back("specimen_id", specimen_id);
+                           {"title", settings.title},
+                           {"specimen_id", specimen_id}};
   if (settings.is_virtual) provenance.emplace_back("specimen", kVirtualSpecimen);
   for (const auto& line : verdict_header(run.verdict, run.gate)) provenance.push_back(line);
   return program_header(made.program, made.path, made.checks, provenance);

@@ -108,6 +108,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// The cache slot of a checkpoint of an unfinished cut.
+std::string checkpoint_slot(const std::string& cut) {
+  return cut + ".checkpoint";
+}
+
 /// One run on its way through the stages.
 class Runner {
  public:
@@ -648,10 +653,6 @@ const SimulatedCut* verifying_cut(const Study& study) {
 
 std::string name_of_pass(int pass) {
   return pass == 0 ? std::string("as_planned") : fmt::format("pass_{}", pass);
-}
-
-std::string checkpoint_slot(const std::string& cut) {
-  return cut + ".checkpoint";
 }
 
 Study run_study(const Case& settings, Inputs& inputs, Cache& cache, const RunOptions& options, Workers& workers,

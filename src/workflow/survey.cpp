@@ -44,6 +44,29 @@ void require_equilibrium(const Case& settings, const StaticResult& result, const
   }
 }
 
+/// Returns the tumour's edge on the stretched skin.
+Contour edge_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
+                const SurfaceQuery& surface, Contour edge) {
+  if (settings.tumor_configuration == TumorConfiguration::Rest) {
+    const SurfaceQuery at_rest(skin_of(model.mesh, model.mesh.vertices));
+    edge = project_tumor_edge(edge, at_rest, settings.plan.approach, settings.surface_tolerance_mm);
+    const TetLocator locator(model.mesh, model.mesh.vertices);
+    for (Vec3& p : edge.points) {
+      const auto point = locator.locate(p, 1.0);
+      INCISE_REQUIRE(point.has_value(), "a point projected on the skin lies outside every tet");
+      p = position_of(*point, model.mesh, stretched);
+    }
+  }
+  return project_tumor_edge(edge, surface, settings.plan.approach, settings.surface_tolerance_mm);
+}
+
+/// Adds to the refusal of a margin the greatest one that fits.
+CaseError with_room(const CaseError& error, const MarginRoom& room) {
+  Problem problem = error.problem();
+  problem.hint = fmt::format("{}. {}", in_words(room), problem.hint);
+  return {"plan", std::move(problem)};
+}
+
 }  // namespace
 
 TissueModel tissue_of(const Case& settings, TetMesh mesh) {
@@ -91,33 +114,6 @@ MeshProduct mesh_around_planned_cut(const Case& settings, const GrayVolume& occu
       monitor);
   return product;
 }
-
-namespace {
-
-/// Returns the tumour's edge on the stretched skin.
-Contour edge_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
-                const SurfaceQuery& surface, Contour edge) {
-  if (settings.tumor_configuration == TumorConfiguration::Rest) {
-    const SurfaceQuery at_rest(skin_of(model.mesh, model.mesh.vertices));
-    edge = project_tumor_edge(edge, at_rest, settings.plan.approach, settings.surface_tolerance_mm);
-    const TetLocator locator(model.mesh, model.mesh.vertices);
-    for (Vec3& p : edge.points) {
-      const auto point = locator.locate(p, 1.0);
-      INCISE_REQUIRE(point.has_value(), "a point projected on the skin lies outside every tet");
-      p = position_of(*point, model.mesh, stretched);
-    }
-  }
-  return project_tumor_edge(edge, surface, settings.plan.approach, settings.surface_tolerance_mm);
-}
-
-/// Adds to the refusal of a margin the greatest one that fits.
-CaseError with_room(const CaseError& error, const MarginRoom& room) {
-  Problem problem = error.problem();
-  problem.hint = fmt::format("{}. {}", in_words(room), problem.hint);
-  return {"plan", std::move(problem)};
-}
-
-}  // namespace
 
 ToolPath plan_on(const Case& settings, const TissueModel& model, std::span<const Vec3> stretched,
                  const std::optional<Contour>& tumor_edge, const std::optional<Contour>& line,

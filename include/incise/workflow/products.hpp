@@ -10,7 +10,6 @@
 #include <incise/workflow/case.hpp>
 
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace incise {

@@ -78,8 +78,6 @@ inline constexpr int kUsualPasses = 3;
 inline constexpr int kMostPasses = 7;
 /// Returns the name of the cut of a pass: as_planned for pass 0.
 [[nodiscard]] std::string name_of_pass(int pass);
-/// Returns the cache slot of a checkpoint of an unfinished cut. @param cut  as_planned, pass_1 …, corrected.
-[[nodiscard]] std::string checkpoint_slot(const std::string& cut);
 
 /// Thrown if a cut is interrupted; its progress is kept.
 class CutInterrupted : public Cancelled {
