@@ -63,27 +63,6 @@ bool is_in_temporary(const fs::path& path) {
   return std::any_of(parent.begin(), parent.end(), [](const fs::path& part) { return parsed(part.string()).has_value(); });
 }
 
-}  // namespace
-
-/// Keeps a file or folder locked while it has a temporary name, so that no process takes it for an abandoned one.
-/// Process numbers alone prove nothing if two machines or containers share a folder.
-class HeldTemporary {
- public:
-  explicit HeldTemporary(int file) : file_(file) {
-    if (file_ >= 0) ::flock(file_, LOCK_EX | LOCK_NB);  // without support for locks, the process number must suffice
-  }
-  ~HeldTemporary() {
-    if (file_ >= 0) ::close(file_);
-  }
-  HeldTemporary(const HeldTemporary&) = delete;
-  HeldTemporary& operator=(const HeldTemporary&) = delete;
-
- private:
-  int file_;
-};
-
-namespace {
-
 bool is_held(const fs::path& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (file < 0) return false;
@@ -182,6 +161,23 @@ bool is_manifest(const nlohmann::ordered_json& json) {
 }
 
 }  // namespace
+
+/// Keeps a file or folder locked while it has a temporary name, so that no process takes it for an abandoned one.
+/// Process numbers alone prove nothing if two machines or containers share a folder.
+class HeldTemporary {
+ public:
+  explicit HeldTemporary(int file) : file_(file) {
+    if (file_ >= 0) ::flock(file_, LOCK_EX | LOCK_NB);  // without support for locks, the process number must suffice
+  }
+  ~HeldTemporary() {
+    if (file_ >= 0) ::close(file_);
+  }
+  HeldTemporary(const HeldTemporary&) = delete;
+  HeldTemporary& operator=(const HeldTemporary&) = delete;
+
+ private:
+  int file_;
+};
 
 void require_writable(const fs::path& name) {
   require_parent_folder(name);

@@ -3,9 +3,6 @@
 #include <incise/geometry/tet_mesh.hpp>
 
 #include <filesystem>
-#include <map>
-#include <optional>
-#include <string>
 #include <vector>
 
 /// One function per tet mesh format. They return the content of the file; read_tet_mesh checks volumes and orientation.

@@ -3,7 +3,6 @@
 #include <incise/geometry/tet_mesh.hpp>
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 /// One function per surface format. They return the content of the file in LPS, with or without triangles.

@@ -4,11 +4,9 @@
 
 #include <incise/io/volume_io.hpp>
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace incise {
 

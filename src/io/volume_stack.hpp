@@ -1,14 +1,5 @@
 #pragma once
 
-// Limits of a scan: from a micro-CT's voxel to more than any scanner's slice spacing, and positions within any
-// scanner's own frame.
-namespace incise {
-inline constexpr double kFinestVoxelMm = 1e-4;
-inline constexpr double kCoarsestVoxelMm = 100.0;
-inline constexpr double kFarthestPlaceOfScanMm = 1e5;
-inline constexpr double kLongestVoxel = 50.0;  // longest side over shortest: a 10 mm slice with pixels of 0.2 mm
-}  // namespace incise
-
 #include <incise/core/monitor.hpp>
 #include <incise/geometry/volume.hpp>
 #include <incise/io/volume_io.hpp>
@@ -18,6 +9,13 @@ inline constexpr double kLongestVoxel = 50.0;  // longest side over shortest: a 
 #include <vector>
 
 namespace incise {
+
+// Limits of a scan: from a micro-CT's voxel to more than any scanner's slice spacing, and positions within any
+// scanner's own frame.
+inline constexpr double kFinestVoxelMm = 1e-4;
+inline constexpr double kCoarsestVoxelMm = 100.0;
+inline constexpr double kFarthestPlaceOfScanMm = 1e5;
+inline constexpr double kLongestVoxel = 50.0;  // longest side over shortest: a 10 mm slice with pixels of 0.2 mm
 
 /// The size, pixel spacing and axes that all slices of a series share.
 struct SliceFrame {

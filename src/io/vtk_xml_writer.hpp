@@ -3,7 +3,6 @@
 #include <incise/geometry/tet_mesh.hpp>
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <span>
 #include <string>

@@ -274,10 +274,6 @@ std::string specimen_id_of_case(const CaseFile& file,
   return stated.empty() ? specimen_id_of_mesh(digest(mesh)) : stated;
 }
 
-std::string specimen_id_of_case(const CaseFile& file) {
-  return specimen_id_of_case(file, sha256_of_input);
-}
-
 std::vector<SettingLine> settings_of(const CaseFile& file) {
   std::vector<SettingLine> settings;
   const auto lister = walk<SettingLister>(file);

@@ -8,8 +8,6 @@
 #include <incise/workflow/robust_correction.hpp>
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 namespace incise {
 

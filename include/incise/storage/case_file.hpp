@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/io/input_file.hpp>
 #include <incise/io/volume_io.hpp>
 #include <incise/workflow/case.hpp>
 
@@ -73,10 +74,8 @@ void require_input_files(const CaseFile& file);
 /// Returns the specimen id of a case: its own `specimen_id`, or else the id in its mesh's file, or else one made from
 /// the digest of its scan or mesh; empty if it names neither.
 /// @param digest  returns the SHA-256 of an input, hexadecimal  @throws DataError if the input cannot be read.
-[[nodiscard]] std::string specimen_id_of_case(const CaseFile& file,
-                                              const std::function<std::string(const std::filesystem::path&)>& digest);
-/// The same; computes the digest with sha256_of_input.
-[[nodiscard]] std::string specimen_id_of_case(const CaseFile& file);
+[[nodiscard]] std::string specimen_id_of_case(
+    const CaseFile& file, const std::function<std::string(const std::filesystem::path&)>& digest = sha256_of_input);
 
 /// Returns all settings of a case, defaults included, in the order of the file.
 [[nodiscard]] std::vector<SettingLine> settings_of(const CaseFile& file);

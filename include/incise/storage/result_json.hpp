@@ -6,8 +6,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <filesystem>
-
 namespace incise {
 
 /// Returns a correction as JSON without its values by waypoint.
