@@ -109,7 +109,7 @@ nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const st
                                     const RunContext& run, Workers& workers, Monitor& monitor) {
   const steps::StepContext context{run, workers, monitor};
   const FolderLock lock(output);
-  laboratory::claim_folder(output, {"incise.acceptance/1", "an acceptance"}, run.seed,
+  laboratory::claim_folder(output, "incise.acceptance/1", "an acceptance", run.seed,
                            {kAcceptanceFile, kAcceptanceTable, "manifest.json"});
   std::vector<Trial> trials(settings.specimens);
   std::vector<Rows> rows(settings.specimens);

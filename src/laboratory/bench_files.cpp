@@ -194,13 +194,9 @@ void write_picture(const std::filesystem::path& file, const ColorPicture& pictur
 
 void write_readings(const std::filesystem::path& folder, const Readings& readings, const std::string& name,
                     const nlohmann::ordered_json& prescription) {
-  DicomTags tags;
-  tags.patient_id = name;
-  tags.series_description = "CT of a virtual specimen";
-  write_dicom_series(folder / "ct", readings.ct, tags);
-  TriMesh cloud;
-  cloud.vertices = readings.cloud_mm;
-  write_ply(folder / "scan.ply", cloud);
+  write_dicom_series(folder / "ct", readings.ct,
+                     {.patient_id = name, .series_description = "CT of a virtual specimen"});
+  write_ply(folder / "scan.ply", TriMesh{.vertices = readings.cloud_mm});
   const FrameShot& frame = readings.frame;
   write_picture(folder / "rgb.png", frame.color);
   write_atomically(folder / "depth.png", [&frame](std::ostream& out) { out << encode_png(frame.depth); });

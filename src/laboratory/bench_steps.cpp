@@ -4,7 +4,6 @@
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
-#include <incise/io/input_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/laboratory/bench_files.hpp>
 #include <incise/laboratory/bench_steps.hpp>
@@ -74,8 +73,7 @@ steps::StepResult cut_specimen_by(const CutSpecimenRequest& request, const steps
     throw DataError(request.program, "poses", *misfit, "a course in this specimen's tissue that goes round its tumour",
                     "Is it the program of another specimen?");
   }
-  PhotographSettings settings;
-  settings.mm_per_pixel = request.mm_per_pixel;
+  const PhotographSettings settings{.mm_per_pixel = request.mm_per_pixel};
   const auto made = specimen->cut(course, request.power_w, settings, context.workers, context.monitor);
   if (!made) {
     context.monitor.message(Severity::Warning, "the cut did not converge, so it has no photograph");
@@ -112,8 +110,7 @@ steps::StepResult cut_by_known_physics(const KnownPhysicsRequest& request, const
   if (!std::filesystem::is_directory(parent)) throw DataError(parent, "", "no such folder", "a folder to write into");
   const BenchBody body = make_body(specimen, {}, context.workers, context.monitor);
   if (!is_stretched(body, context.monitor)) return {nullptr, false};
-  PlanSettings plan;
-  plan.power_w = request.power_w;
+  const PlanSettings plan{.power_w = request.power_w};
   const KnownPhysicsCut made = cut_knowing_physics(body, plan, request.simulations, context.workers, context.monitor);
   steps::StepResult result_of;
   nlohmann::ordered_json& result = result_of.json;

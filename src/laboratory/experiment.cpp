@@ -269,11 +269,8 @@ ExperimentJson Experiment::run() {
   result["specimens_test"] = json_part(comparison_, "/specimens");
   result["table_1"] = json_part(table_1_, "/rows");
   result["table_2"] = table_2_json(trials_);
-  result["tested_specimens"] = ExperimentJson::array();
-  for (const TestedSpecimen& specimen : tested) result["tested_specimens"].push_back(to_json(specimen));
-  const std::vector<LearningPoint> curve = learning_curve(std::span(&tested, 1));
-  result["learning"] = ExperimentJson::array();
-  for (const LearningPoint& point : curve) result["learning"].push_back(to_json(point));
+  result["tested_specimens"] = to_json(tested);
+  result["learning"] = to_json(learning_curve(std::span(&tested, 1)));
   result["assessments"] = assessments_json(trials_);
   result["figures"] = ExperimentJson::array();
   for (const char* figure : {"comparison/box_plot.svg", "comparison/error_by_clock.svg", "table_1/table_1.svg",
@@ -630,11 +627,9 @@ void Experiment::calibrate() {
     words.emplace_back("--registration");
     for (const auto& file : request.registrations) words.push_back(file.string());
     words.insert(words.end(), {"--method", std::string(to_string(method)), "-o", request.output.string()});
-    const StepAnswer answer =
-        steps.run({step, words, inputs, {request.output / product}, [=](const steps::StepContext& context) {
-                     return steps::calibrate_on_cuts(request, context).step;
-                   }});
-    return answer;
+    return steps.run({step, words, inputs, {request.output / product}, [=](const steps::StepContext& context) {
+                        return steps::calibrate_on_cuts(request, context).step;
+                      }});
   };
   const std::size_t all = asked.cases.size();
   const auto of_all = [&](const char* step, CalibrationMethod method, const char* folder, const char* product) {

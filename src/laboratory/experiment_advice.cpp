@@ -201,40 +201,9 @@ LinePlot reliability_plot(const AdviceJson& margin) {
   return plot;
 }
 
-}  // namespace
-
-std::optional<bool> AdvisedSpecimen::is_worse() const {
-  return is_second_worse(planned.true_mm, corrected.true_mm);
-}
-
-std::optional<bool> AdvisedSpecimen::is_worse_without_pull() const {
-  return withheld ? is_second_worse(planned.true_mm, withheld->true_mm) : std::nullopt;
-}
-
-void describe(Visitor& v, AdvisedSpecimen& s) {
-  v("specimen", s.name, "Name of the specimen.");
-  v.derived("series", s.series,
-            "Intervals draw the specimens of one series together; 0: they are taken as independent.");
-  v("role", s.role, "Role of the specimen: test or outside.");
-  v("kind", s.kind, "Kind of a specimen outside the calibrated range; else empty.");
-  v("advice", s.advice, "Advice of `incise assess`.");
-  v({"expected_gain_mm", "Expected mean absolute error as planned minus that corrected.", "mm"}, s.expected_gain_mm);
-  describe_interval(v, {"gain_80_mm", "Stated middle 80 % of the gain.", "mm"}, s.gain_80);
-  describe_interval(v, {"gain_95_mm", "Stated middle 95 % of the gain.", "mm"}, s.gain_95);
-  v("p_worse", s.p_worse, "Stated probability that the corrected cut is the worse one.", {0.0, 1.0});
-  v("p_worse_if_alike", s.p_worse_if_alike, "p_worse if the calibration holds, by the simulation.", {0.0, 1.0});
-  v("p_worse_if_unlike", s.p_worse_if_unlike, "p_worse if the calibration does not hold, by the move alone.",
-    {0.0, 1.0});
-  v("p_unlike", s.p_unlike, "Probability that the calibration does not hold.", {0.0, 1.0});
-  v("planned", s.planned, "The cut as planned.");
-  v("corrected", s.corrected, "The corrected cut.");
-  v.derived("is_worse", s.is_worse(),
-            "Whether the corrected cut is the worse one, by the truth; absent: two open rings.");
-  v("p_worse_without_pull", s.p_worse_without_pull, "p_worse if the pull had not been measured.", {0.0, 1.0});
-  v("withheld", s.withheld, "The cut corrected without the pull.");
-  v.derived("is_worse_without_pull", s.is_worse_without_pull(), "is_worse of the cut corrected without the pull.");
-}
-
+/// Returns the trials that were assessed and cut twice. Only the bench's truth, never the way a specimen was drawn,
+/// decides whether a corrected cut was worse and whether a margin fell below the clinical cut-off.
+/// @param truth  folder with the truth of each cut: NAME_planned/cut_truth.json, NAME_corrected, NAME_withheld.
 std::vector<AdvisedSpecimen> advised_specimens(const std::vector<Trial>& trials, const std::filesystem::path& truth) {
   std::vector<AdvisedSpecimen> specimens;
   for (const Trial& trial : trials) {
@@ -269,6 +238,40 @@ std::vector<AdvisedSpecimen> advised_specimens(const std::vector<Trial>& trials,
   return specimens;
 }
 
+}  // namespace
+
+std::optional<bool> AdvisedSpecimen::is_worse() const {
+  return is_second_worse(planned.true_mm, corrected.true_mm);
+}
+
+std::optional<bool> AdvisedSpecimen::is_worse_without_pull() const {
+  return withheld ? is_second_worse(planned.true_mm, withheld->true_mm) : std::nullopt;
+}
+
+void describe(Visitor& v, AdvisedSpecimen& s) {
+  v("specimen", s.name, "Name of the specimen.");
+  v.derived("series", s.series,
+            "Intervals draw the specimens of one series together; 0: they are taken as independent.");
+  v("role", s.role, "Role of the specimen: test or outside.");
+  v("kind", s.kind, "Kind of a specimen outside the calibrated range; else empty.");
+  v("advice", s.advice, "Advice of `incise assess`.");
+  v({"expected_gain_mm", "Expected mean absolute error as planned minus that corrected.", "mm"}, s.expected_gain_mm);
+  describe_interval(v, {"gain_80_mm", "Stated middle 80 % of the gain.", "mm"}, s.gain_80);
+  describe_interval(v, {"gain_95_mm", "Stated middle 95 % of the gain.", "mm"}, s.gain_95);
+  v("p_worse", s.p_worse, "Stated probability that the corrected cut is the worse one.", {0.0, 1.0});
+  v("p_worse_if_alike", s.p_worse_if_alike, "p_worse if the calibration holds, by the simulation.", {0.0, 1.0});
+  v("p_worse_if_unlike", s.p_worse_if_unlike, "p_worse if the calibration does not hold, by the move alone.",
+    {0.0, 1.0});
+  v("p_unlike", s.p_unlike, "Probability that the calibration does not hold.", {0.0, 1.0});
+  v("planned", s.planned, "The cut as planned.");
+  v("corrected", s.corrected, "The corrected cut.");
+  v.derived("is_worse", s.is_worse(),
+            "Whether the corrected cut is the worse one, by the truth; absent: two open rings.");
+  v("p_worse_without_pull", s.p_worse_without_pull, "p_worse if the pull had not been measured.", {0.0, 1.0});
+  v("withheld", s.withheld, "The cut corrected without the pull.");
+  v.derived("is_worse_without_pull", s.is_worse_without_pull(), "is_worse of the cut corrected without the pull.");
+}
+
 AdviceJson advice_scores(const std::vector<AdvisedSpecimen>& specimens) {
   if (specimens.empty()) return nullptr;
   AdviceJson json;
@@ -288,8 +291,7 @@ AdviceJson advice_scores(const std::vector<AdvisedSpecimen>& specimens) {
       forecasts_of(specimens, false, &AdvisedSpecimen::p_worse_without_pull, &AdvisedSpecimen::is_worse_without_pull));
   json["close_margin"] = close_margin_json(specimens);
   json["intervals"] = intervals_json(specimens);
-  json["specimens"] = AdviceJson::array();
-  for (const AdvisedSpecimen& specimen : specimens) json["specimens"].push_back(to_json(specimen));
+  json["specimens"] = to_json(specimens);
   return json;
 }
 

@@ -49,12 +49,6 @@ struct AdvisedSpecimen {
 };
 void describe(Visitor& v, AdvisedSpecimen& s);
 
-/// Returns the trials that were assessed and cut twice. Only the bench's truth, never the way a specimen was drawn,
-/// decides whether a corrected cut was worse and whether a margin fell below the clinical cut-off.
-/// @param truth  folder with the truth of each cut: NAME_planned/cut_truth.json, NAME_corrected, NAME_withheld.
-[[nodiscard]] std::vector<AdvisedSpecimen> advised_specimens(const std::vector<Trial>& trials,
-                                                             const std::filesystem::path& truth);
-
 /// Compares the statements of `incise assess` about specimens with the outcomes.
 /// @returns null without specimens; else `specimens`, `advised`, `worse`, `auc`, `auc_outside_alone` and
 /// `auc_without_pull` (advice and correction without the pull; each null if all or none were worse), `auc_of` and

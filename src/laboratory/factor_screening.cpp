@@ -137,7 +137,7 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
   const steps::StepContext context{run, workers, monitor};
   const FractionalFactorial design(settings.factors.size());
   const FolderLock lock(output);
-  laboratory::claim_folder(output, {"incise.factors/1", "a screening of factors"}, run.seed,
+  laboratory::claim_folder(output, "incise.factors/1", "a screening of factors", run.seed,
                            {"factors.json", "factors.csv", "cuts.csv", "factors.svg", "manifest.json"});
   const std::size_t runs = design.runs();
   const auto specimens = static_cast<std::size_t>(settings.specimens);

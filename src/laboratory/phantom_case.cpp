@@ -22,10 +22,9 @@ void write_volume(const std::filesystem::path& folder, PhantomForm form, const P
     write_ct(folder / volume_name(form), phantom.ct);
     return;
   }
-  DicomTags tags;
-  tags.patient_id = fmt::format("VIRTUAL-{}", seed);
-  tags.series_description = fmt::format("Synthetic CT of a virtual tongue, seed {}", seed);
-  write_dicom_series(folder / "ct", phantom.ct, tags);
+  write_dicom_series(folder / "ct", phantom.ct,
+                     {.patient_id = fmt::format("VIRTUAL-{}", seed),
+                      .series_description = fmt::format("Synthetic CT of a virtual tongue, seed {}", seed)});
 }
 
 /// Places the middle of the tumour 600 mm in front of the robot's base and 200 mm above it, with the tip of the tongue
@@ -76,8 +75,7 @@ nlohmann::ordered_json truth_json(const Phantom& phantom, std::uint64_t seed) {
 
 steps::StepResult make_phantom_case(const PhantomRequest& request, const steps::StepContext& context) {
   const std::filesystem::path& folder = request.output;
-  PhantomSettings settings;
-  settings.seed = context.run.seed;
+  const PhantomSettings settings{.seed = context.run.seed};
   Monitor& monitor = context.monitor;
   monitor.message(Severity::Notice, fmt::format("phantom: making a virtual specimen, seed {}", settings.seed));
   const Phantom phantom = make_phantom(settings, monitor);

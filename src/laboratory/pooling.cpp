@@ -311,8 +311,7 @@ PoolJson pool_experiments(const std::vector<std::filesystem::path>& experiments,
   const std::string default_path{laboratory::kIncisePath}, robust{to_string(laboratory::RivalPath::Robust)};
   result["robust_against_default"] = to_json(laboratory::compare_two(tested, default_path, robust));
   const std::vector<laboratory::LearningPoint> curve = laboratory::learning_curve(tested);
-  result["learning"] = PoolJson::array();
-  for (const laboratory::LearningPoint& point : curve) result["learning"].push_back(to_json(point));
+  result["learning"] = to_json(curve);
   PoolJson advice = laboratory::advice_scores(advised);
   if (advice.is_object()) advice["intervals_by"] = is_by_series ? "series" : "specimens";
   result["advice"] = advice;

@@ -26,15 +26,11 @@ class TrialOnBench {
   SpecimenTrial specimen_;
 };
 
-/// The purpose of an output folder.
-struct FolderClaim {
-  const char* schema = "";  ///< schema of its bench.json
-  const char* what = "";    ///< "an acceptance"
-};
-
 /// Claims a folder for the specimens of one first seed. Removes `summaries`, the overall results of an earlier run, so
-/// that nobody takes them for results of this run. @throws DataError for a folder of another purpose or another seed.
-void claim_folder(const std::filesystem::path& output, const FolderClaim& claim, std::uint64_t seed,
+/// that nobody takes them for results of this run.
+/// @param schema  of its bench.json.  @param what  its purpose: "an acceptance".
+/// @throws DataError for a folder of another purpose or another seed.
+void claim_folder(const std::filesystem::path& output, const char* schema, const char* what, std::uint64_t seed,
                   std::initializer_list<const char*> summaries);
 
 }  // namespace incise::laboratory

@@ -5,8 +5,6 @@
 #include <incise/io/table_io.hpp>
 
 #include <filesystem>
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace incise {
