@@ -141,6 +141,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const auto ended = [](int status, const std::string& why) {
+    say(fmt::format("incise: {}\n", why));
+    return status;
+  };
   try {
     prepare_standard_streams();
     refuse_names_that_are_not_utf8(argc, argv);
@@ -149,33 +153,24 @@ int main(int argc, char** argv) {
     finish_standard_output();
     return argc < 2 ? kBadCase : status;  // no verb was given
   } catch (const CaseError& error) {
-    say(fmt::format("incise: {}\n", error.what()));
-    return kBadCase;
+    return ended(kBadCase, error.what());
   } catch (const DataError& error) {
-    say(fmt::format("incise: {}\n", error.what()));
-    return kBadData;
+    return ended(kBadData, error.what());
   } catch (const StagesKept& error) {
-    say(fmt::format("incise: {}\n", error.what()));
-    return kInterrupted;
+    return ended(kInterrupted, error.what());
   } catch (const Cancelled& error) {
-    say(fmt::format("incise: {}; nothing was written\n", error.what()));
-    return kInterrupted;
+    return ended(kInterrupted, fmt::format("{}; nothing was written", error.what()));
   } catch (const std::filesystem::filesystem_error& error) {
-    say(fmt::format("incise: {}: found {}, expected a path that can be used\n", error.path1().string(), error.code().message()));
-    return kBadData;
+    return ended(kBadData, DataError(error.path1(), "", system_reason(error.code()), "a path that can be used").what());
   } catch (const std::system_error& error) {  // from fmt, if standard output accepts no more
-    say(fmt::format("incise: standard output: found {}, expected a stream that accepts all output\n",
-                    error.code().message()));
-    return kBadData;
+    return ended(kBadData, DataError("standard output", "", system_reason(error.code()), kAllOutput).what());
   } catch (const nlohmann::json::exception& error) {
-    say(fmt::format("incise: a JSON file that was read: found {}, expected content as incise writes it\n",
-                    error.what()));
-    return kBadData;
+    return ended(kBadData,
+                 DataError("a JSON file that was read", "", error.what(), "content as incise writes it").what());
   } catch (const std::bad_alloc&) {
     say("incise: out of memory\n");
     return kBadData;
   } catch (const std::exception& error) {
-    say(fmt::format("incise: internal error: {}\n", error.what()));
-    return kOwnFault;
+    return ended(kOwnFault, fmt::format("internal error: {}", error.what()));
   }
 }

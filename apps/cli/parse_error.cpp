@@ -6,7 +6,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -42,14 +41,6 @@ const CLI::Option* option_named_in(const CLI::App& verb, const std::string& mess
     }
   }
   return nullptr;
-}
-
-/// Returns a description without its capital letter, unless it starts with an abbreviation such as DICOM.
-std::string within_sentence(std::string description) {
-  const auto is_upper = [](char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; };
-  if (description.size() < 2 || is_upper(description[1])) return description;
-  description[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(description[0])));
-  return description;
 }
 
 /// Returns a number unchanged, a word in quotes.

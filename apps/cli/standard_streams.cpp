@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 
 namespace incise::cli {
@@ -35,8 +34,8 @@ void finish_standard_output() {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) return;
   if (errno == 0 && ::write(STDOUT_FILENO, "\n", 1) == 1) errno = 0;  // it failed earlier: writes again to learn why
-  throw DataError("standard output", "", errno != 0 ? std::strerror(errno) : "a failed write",
-                  "a stream that accepts all output", "Output files are complete");
+  throw DataError("standard output", "", errno != 0 ? system_reason(errno) : "a failed write", kAllOutput,
+                  "Output files are complete");
 }
 
 }  // namespace incise::cli

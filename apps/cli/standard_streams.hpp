@@ -4,6 +4,9 @@
 
 namespace incise::cli {
 
+/// What is expected of standard output, for messages.
+inline constexpr const char* kAllOutput = "a stream that accepts all output";
+
 /// Writes to standard error. A failure is ignored: the results are in files, on standard output, and in the exit
 /// status.
 void say(std::string_view text);

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+
 namespace incise {
 namespace {
 
@@ -38,6 +40,21 @@ std::vector<std::string> sentences(std::span<const Problem> problems) {
   std::vector<std::string> all;
   for (const Problem& problem : problems) all.push_back(sentence(problem));
   return all;
+}
+
+std::string within_sentence(std::string text) {
+  const auto is_upper = [](char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; };
+  if (text.size() < 2 || is_upper(text[1])) return text;
+  text[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(text[0])));
+  return text;
+}
+
+std::string system_reason(const std::error_code& error) {
+  return within_sentence(error.message());
+}
+
+std::string system_reason(int number) {
+  return system_reason(std::error_code(number, std::generic_category()));
 }
 
 void require_none(std::span<const Problem> problems, const char* function) {

@@ -17,7 +17,6 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <fstream>
 #include <memory>
 #include <optional>
@@ -198,20 +197,20 @@ void write_atomically(const fs::path& name, const std::function<void(std::ostrea
   const fs::path temporary = temporary_beside(path);
   constexpr mode_t kMode = 0666;
   const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-  if (file < 0) throw DataError(path, "", std::strerror(errno), "a file that can be written");
+  if (file < 0) throw DataError(path, "", system_reason(errno), "a file that can be written");
   const HeldTemporary held(file);
   const auto require_done = [&path](const std::string& problem) {
     if (!problem.empty()) throw DataError(path, "", problem, "a file that can be written", "Is the disk full?");
   };
   try {
     std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-    if (!stream) throw DataError(path, "", std::strerror(errno), "a file that can be written");
+    if (!stream) throw DataError(path, "", system_reason(errno), "a file that can be written");
     write(stream);
     stream.close();
     if (!stream) throw DataError(path, "", "a failed write", "a complete file", "Is the disk full?");
     if (!is_part_of_folder) require_done(synced(temporary));
     fs::rename(temporary, path, error);
-    if (error) throw DataError(path, "", error.message(), "a file that can be written");
+    if (error) throw DataError(path, "", system_reason(error), "a file that can be written");
   } catch (...) {
     fs::remove(temporary, error);
     throw;
@@ -226,7 +225,7 @@ void write_atomically(const fs::path& name, std::string_view content) {
 std::string read_text(const fs::path& path) {
   require_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw DataError(path, "", std::strerror(errno), "a readable file");
+  if (!stream) throw DataError(path, "", system_reason(errno), "a readable file");
   std::string text;
   char block[1 << 16];
   while (stream.read(block, sizeof block) || stream.gcount() > 0) {
@@ -240,7 +239,7 @@ void make_folder(const fs::path& folder, const char* expected) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder))
-    throw DataError(folder, "", error ? error.message() : "something that is not a folder", expected);
+    throw DataError(folder, "", error ? system_reason(error) : "something that is not a folder", expected);
 }
 
 void require_replaceable(const fs::path& name) {
@@ -283,7 +282,7 @@ void remove_replaceable(const fs::path& name) {
   const fs::path temporary = temporary_beside(folder);
   fs::rename(folder, temporary, error);
   if (!error) fs::remove_all(temporary, error);
-  if (error) throw DataError(folder, "", error.message(), "a folder that can be removed");
+  if (error) throw DataError(folder, "", system_reason(error), "a folder that can be removed");
 }
 
 void remove_abandoned_temporaries(const fs::path& folder) { tidy(abandoned_in(folder, "", true), folder); }
@@ -297,7 +296,7 @@ AtomicFolder::AtomicFolder(fs::path target) : target_(without_trailing_slash(tar
   require_replaceable(target_);
   temporary_ = temporary_beside(target_);
   fs::create_directory(temporary_, error);
-  if (error) throw DataError(target_, "", error.message(), "a folder that can be written");
+  if (error) throw DataError(target_, "", system_reason(error), "a folder that can be written");
   held_ = std::make_unique<HeldTemporary>(::open(temporary_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
 }
 

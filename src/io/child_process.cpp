@@ -102,13 +102,13 @@ std::string in_child_process(const std::filesystem::path& file, const std::strin
                              const std::function<std::string()>& work) {
   const ImageLibraryTurn turn;
   int ends[2];
-  if (::pipe(ends) != 0) throw DataError(file, "", std::strerror(errno), "a process to read it in");
+  if (::pipe(ends) != 0) throw DataError(file, "", system_reason(errno), "a process to read it in");
   const pid_t child = ::fork();
   if (child < 0) {
     const int problem = errno;
     ::close(ends[0]);
     ::close(ends[1]);
-    throw DataError(file, "", std::strerror(problem), "a process to read it in");
+    throw DataError(file, "", system_reason(problem), "a process to read it in");
   }
   if (child == 0) {
     ::close(ends[0]);

@@ -46,7 +46,7 @@ void EntryFolder::save(const std::string& name, const std::string& bytes) {
 void EntryFolder::remove(const std::string& name) {
   std::error_code error;
   std::filesystem::remove(place_of(name), error);
-  if (error) throw DataError(place_of(name), "", error.message(), "an entry that can be removed");
+  if (error) throw DataError(place_of(name), "", system_reason(error), "an entry that can be removed");
 }
 
 }  // namespace incise

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -52,14 +51,14 @@ bool is_still_there(int file, const std::filesystem::path& folder) {
 int open_folder(const std::filesystem::path& folder) {
   make_folder(folder);
   const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) throw DataError(folder, "", std::strerror(errno), "a folder that can be read and written");
+  if (file < 0) throw DataError(folder, "", system_reason(errno), "a folder that can be read and written");
   return file;
 }
 
 [[noreturn]] void refuse(const std::filesystem::path& folder, ino_t inode, int problem) {
   if (problem == EWOULDBLOCK)
     throw DataError(folder, "", description_of(holder_of(inode)), kExpected, "Wait until it has ended, or choose another place for the output");
-  throw DataError(folder, "", fmt::format("a folder that cannot be locked: {}", std::strerror(problem)), kExpected,
+  throw DataError(folder, "", fmt::format("a folder that cannot be locked: {}", system_reason(problem)), kExpected,
                   "Choose a local disk for the output");
 }
 

@@ -131,7 +131,7 @@ void require_regular_file(const fs::path& path, std::uint64_t most_bytes) {
   if (!fs::is_regular_file(status)) throw DataError(path, "", kind_of_file(path), "a file");
   std::error_code error;
   const std::uint64_t size = fs::file_size(path, error);
-  if (error) throw DataError(path, "", error.message(), "a readable file");
+  if (error) throw DataError(path, "", system_reason(error), "a readable file");
   if (size > most_bytes) {
     throw DataError(path, "size", fmt::format("{} bytes", size), fmt::format("at most {} bytes for a file of this kind", most_bytes));
   }

@@ -33,7 +33,7 @@ std::string sha256_of_folder(const fs::path& folder) {
   for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     if (entry->is_regular_file()) names.push_back(entry->path().lexically_relative(folder).generic_string());
   }
-  if (error) throw DataError(folder, "", error.message(), "a readable folder");
+  if (error) throw DataError(folder, "", system_reason(error), "a readable folder");
   std::sort(names.begin(), names.end());
   std::string lines;
   for (const auto& name : names) lines += fmt::format("{}  {}\n", sha256_of_file(folder / name), name);

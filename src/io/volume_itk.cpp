@@ -322,7 +322,7 @@ class StagingFolder {
   void move_one(const fs::path& from) const {
     std::error_code error;
     fs::rename(from, target_.parent_path() / from.filename(), error);
-    if (error) throw DataError(target_, "", error.message(), "a file that can be written");
+    if (error) throw DataError(target_, "", system_reason(error), "a file that can be written");
   }
 
   fs::path target_;

@@ -182,8 +182,7 @@ StepAnswer ExperimentSteps::made_now(const ExperimentStep& step, LogFile& log) {
   } catch (const DataError& error) {
     return unusable(error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    return unusable(
-        fmt::format("{}: found {}, expected a path that can be used", error.path1().string(), error.code().message()));
+    return unusable(DataError(error.path1(), "", system_reason(error.code()), "a path that can be used").what());
   } catch (const Cancelled&) {
     throw;
   } catch (const std::exception& error) {  // a fault of the program: the experiment ends, and says where

@@ -49,7 +49,7 @@ void make_parent(const std::filesystem::path& folder) {
   const auto parent = std::filesystem::absolute(folder).parent_path();
   std::error_code error;
   std::filesystem::create_directories(parent, error);
-  if (error) throw DataError(folder, "", error.message(), "a folder that can be made");
+  if (error) throw DataError(folder, "", system_reason(error), "a folder that can be made");
   require_replaceable(folder);
 }
 

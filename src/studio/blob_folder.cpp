@@ -5,7 +5,6 @@
 
 #include <bit>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 
 namespace incise::studio {
@@ -29,7 +28,7 @@ nlohmann::ordered_json BlobFolder::write(const std::string& slot, std::string_vi
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   if (!file) {
-    const std::string why = std::strerror(errno);
+    const std::string why = system_reason(errno);
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
     throw DataError(path, "", why, "room for an array that the page shows");

@@ -110,7 +110,7 @@ Json FileIds::list(const std::string& id) {
   if (!fs::is_directory(folder)) throw CaseError("request", "folder", "a file", "a folder");
   std::error_code failed;
   fs::directory_iterator entries(folder, failed);
-  if (failed) throw DataError(folder, "", failed.message(), "a folder that can be read");
+  if (failed) throw DataError(folder, "", system_reason(failed), "a folder that can be read");
 
   std::vector<std::pair<bool, fs::path>> found;  // whether it is no folder, and its name
   for (; !failed && entries != fs::directory_iterator(); entries.increment(failed)) {

@@ -15,7 +15,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstring>
 #include <deque>
 
 extern char** environ;
@@ -34,7 +33,7 @@ struct Pipe {
 
 Pipe new_pipe() {
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) throw Error(fmt::format("no pipe to a worker: {}", std::strerror(errno)));
+  if (::pipe2(ends, O_CLOEXEC) != 0) throw Error(fmt::format("no pipe to a worker: {}", system_reason(errno)));
   return {ends[0], ends[1]};
 }
 
@@ -71,7 +70,7 @@ pid_t spawn(const std::vector<std::string>& command, int in, int out) {
   const int failed = ::posix_spawn(&pid, arguments[0], &files, &attributes, arguments.data(), environ);
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
-  if (failed != 0) throw Error(fmt::format("no worker could be started: {}", std::strerror(failed)));
+  if (failed != 0) throw Error(fmt::format("no worker could be started: {}", system_reason(failed)));
   return pid;
 }
 

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cerrno>
+
 namespace incise {
 namespace {
 
@@ -33,6 +35,18 @@ TEST(CaseError, NamesTheFileThatItsThrowerDidNotKnow) {
                "case.yaml: found a list, expected a table");
   const CaseError known("case.yaml line 7", "plan.depth_mm", "0", "more");
   EXPECT_STREQ(known.in_file("case.yaml").what(), known.what());
+}
+
+TEST(SystemReason, ReadsWellInsideASentence) {
+  EXPECT_EQ(system_reason(ENOENT), "no such file or directory");
+  EXPECT_EQ(system_reason(std::make_error_code(std::errc::permission_denied)), "permission denied");
+}
+
+TEST(WithinSentence, KeepsAbbreviations) {
+  EXPECT_EQ(within_sentence("A cloud"), "a cloud");
+  EXPECT_EQ(within_sentence("DICOM folder"), "DICOM folder");
+  EXPECT_EQ(within_sentence("A"), "A");
+  EXPECT_EQ(within_sentence(""), "");
 }
 
 TEST(DataError, NamesPathPlaceFoundAndExpected) {
