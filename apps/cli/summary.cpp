@@ -37,6 +37,7 @@ void print_checks(const nlohmann::ordered_json& checks) {
 void print_lines(const nlohmann::ordered_json& object, const std::string& prefix) {
   constexpr std::size_t kLongList = 6;
   for (const auto& [key, value] : object.items()) {
+    if (key == "warnings") continue;  // shown as such, on standard error
     const std::string name = prefix.empty() ? key : prefix + "." + key;
     if (key == "verdict" && value.is_object() && value.contains("reasons")) {
       print_verdict(value);

@@ -96,7 +96,7 @@ void add_contours(nlohmann::ordered_json& json, const Evaluation& evaluation, co
 struct Measured {
   Evaluation evaluation;
   nlohmann::ordered_json json;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings;  ///< beside the verdict
   Verdict verdict;  ///< of the measurement: whether its numbers can be trusted
   FoundPixels pixels;  ///< of a photograph
 };
@@ -204,9 +204,6 @@ Measured from_photo(const EvaluateRequest& request) {
   tell(found.green_beside, "green mark", "beside", "a second tumour?", result.warnings);
   if (scale.ruler) add_ruler_doubts(*scale.ruler, result.verdict);
   add_ring_doubts(found, photo.max_gap_mm, result.verdict);
-  for (const VerdictReason& reason : result.verdict.reasons()) {
-    result.warnings.push_back(fmt::format("{}: {}: {}", to_string(reason.severity), reason.id, reason.message));
-  }
   result.json["verdict"] = to_json(result.verdict);
   if (!request.figure.empty()) {
     const std::string png = encode_png(draw_found(picture, {&found.green, &found.red}, scale.marks_px));
@@ -333,6 +330,7 @@ EvaluatedCut evaluate_in_pixels(const EvaluateRequest& asked, const StepContext&
   if (!specimen_id.empty()) found.json["specimen_id"] = specimen_id;
   if (!request.output.empty()) write_json(request.output, found.json);
   for (const std::string& warning : found.warnings) context.monitor.message(Severity::Warning, warning);
+  report_reasons(found.verdict, context.monitor);
   const bool is_refused = found.verdict.status() == VerdictStatus::Refused;
   const bool is_acceptable = found.evaluation.outcome == Outcome::Success && !is_refused;
   return {{std::move(found.json), is_acceptable}, std::move(found.pixels)};

@@ -119,7 +119,10 @@ class PhotoTest(CommandTest):
         self.assertAlmostEqual(spot["u_px"], 250.0, delta=1.0)
         self.assertAlmostEqual(spot["longest_mm"], 10.0 * SCALE, delta=3.0 * SCALE)
         self.assertIn("1 red spot inside the tumour's edge", result["warnings"][0])
-        self.assertIn("warning: 1 red spot inside", done.stderr)
+        said = self.incise("evaluate", photo, "--mm-per-pixel", SCALE)
+        for stderr in (done.stderr, said.stderr):
+            self.assertEqual(stderr.count("warning: 1 red spot inside"), 1)
+        self.assertNotIn("red spot", said.stdout)
 
     def test_gaps_as_large_as_the_picture_are_refused(self):
         photo = self.photo(TUMOR, self.ring(10.0))
