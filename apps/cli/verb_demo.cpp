@@ -4,11 +4,23 @@
 #include <incise/core/error.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/laboratory/bench_steps.hpp>
+#include <incise/storage/own_files.hpp>
 
 #include <fmt/format.h>
 
 namespace incise::cli {
 namespace {
+
+/// Refuses a folder with a run of a case other than the demo's own: its results would be replaced.
+void require_own_run(const std::filesystem::path& root) {
+  require_own_files(root);
+  const std::filesystem::path record = root / "study.json";
+  if (!std::filesystem::exists(record)) return;
+  const nlohmann::ordered_json found = read_json(record).at("case_file");
+  if (found != "specimen/case.yaml")
+    throw DataError(record, "case_file", found.dump(), "\"specimen/case.yaml\", the demo's own case",
+                    "Choose another place for the output");
+}
 
 /// Returns the virtual specimen of this seed, making it unless a complete one exists.
 std::filesystem::path specimen_for(const std::filesystem::path& folder, const CommonOptions& options) {
@@ -28,6 +40,7 @@ std::filesystem::path specimen_for(const std::filesystem::path& folder, const Co
 int demo(const CutOptions& cut, const CommonOptions& options) {
   require_accepted_ids(cut.accepted);
   const std::filesystem::path root = options.output.empty() ? std::filesystem::path("demo") : options.output;
+  require_own_run(root);
   const std::filesystem::path specimen = specimen_for(root / "specimen", options);
   try {
     return run_whole_loop(specimen, root, options, cut);

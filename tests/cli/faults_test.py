@@ -162,6 +162,13 @@ class ForeignFilesTest(CommandTest):
         self.assert_refused(self.incise("plan", "case", "-o", "out"), BAD_DATA, "plan", "found a link")
         self.assertEqual(files_below(self.folder / "other"), kept)
 
+    def test_a_run_of_another_case_is_not_replaced_by_the_demo(self):
+        self.assertEqual(self.incise("plan", "case", "-o", "out").returncode, DONE)
+        kept = files_below(self.out)
+        self.assert_refused(self.incise("demo", "-o", "out"), BAD_DATA, "study.json: case_file: found \"../case/case.yaml\"",
+                            "the demo's own case", "Choose another place for the output")
+        self.assertEqual(files_below(self.out), kept)
+
     def test_a_study_that_was_damaged_is_named_by_the_report(self):
         self.assertEqual(self.incise("plan", "case", "-o", "out").returncode, DONE)
         study = self.out / "study.json"
