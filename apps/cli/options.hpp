@@ -122,6 +122,8 @@ void print_result(const CommonOptions& options, const nlohmann::ordered_json& re
 /// @param print  another summary than print_result's for a person. @returns the exit status.
 int run_step(const CommonOptions& options, const std::function<steps::StepResult(const steps::StepContext&)>& step,
              const std::function<void(const nlohmann::ordered_json&)>& print = {});
+/// Prints the result of `simulate` for a person: the main measures of the cut, its verdict and its folder.
+void print_cut(const nlohmann::ordered_json& result);
 /// Prints a whole loop for a person: the main measures of the two cuts side by side.
 void print_study(const nlohmann::ordered_json& result);
 

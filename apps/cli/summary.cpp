@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 namespace incise::cli {
 namespace {
@@ -57,44 +59,57 @@ void print_lines(const nlohmann::ordered_json& object, const std::string& prefix
   }
 }
 
-struct StudyLine {
+struct CutLine {
   const char* text;
   const char* pointer;  // into the summary of one cut
 };
-constexpr std::array<StudyLine, 13> kStudyLines{{{"outcome", "/outcome"},
-                                                 {"ring closed", "/closed_loop"},
-                                                 {"mid-line: mean |error|, mm", "/abs_error_mm/mean"},
-                                                 {"mid-line: greatest |error|, mm", "/abs_error_mm/max"},
-                                                 {"mid-line: mean signed error, mm", "/signed_error_mm/mean"},
-                                                 {"inner edge: mean |error|, mm", "/inner_edge/abs_error_mm/mean"},
-                                                 {"centroid shift, mm", "/centroid_shift_mm"},
-                                                 {"depth reached: least, mm", "/depth_reached_mm/min"},
-                                                 {"lag when cut: mean, mm", "/lag_mm/mean"},
-                                                 {"kerf to tumour surface: least, mm", "/deep_margin_mm/nearest"},
-                                                 {"greatest tool force, mN", "/peak_tool_force_mn"},
-                                                 {"vertex moves limited to max_step_mm", "/held_back_vertices"},
-                                                 {"time of the cut, s", "/wall_s"}}};
+constexpr std::array<CutLine, 13> kCutLines{{{"outcome", "/outcome"},
+                                             {"ring closed", "/closed_loop"},
+                                             {"mid-line: mean |error|, mm", "/abs_error_mm/mean"},
+                                             {"mid-line: greatest |error|, mm", "/abs_error_mm/max"},
+                                             {"mid-line: mean signed error, mm", "/signed_error_mm/mean"},
+                                             {"inner edge: mean |error|, mm", "/inner_edge/abs_error_mm/mean"},
+                                             {"centroid shift, mm", "/centroid_shift_mm"},
+                                             {"depth reached: least, mm", "/depth_reached_mm/min"},
+                                             {"lag when cut: mean, mm", "/lag_mm/mean"},
+                                             {"kerf to tumour surface: least, mm", "/deep_margin_mm/nearest"},
+                                             {"greatest tool force, mN", "/peak_tool_force_mn"},
+                                             {"vertex moves limited to max_step_mm", "/held_back_vertices"},
+                                             {"time of the cut, s", "/wall_s"}}};
 
-std::string shown_at(const nlohmann::ordered_json& result, const char* part, const char* pointer) {
-  const auto cut = result.find(part);
+/// A simulated cut in a result: where it stands there (a JSON pointer), and its name.
+struct ShownCut {
+  std::string at;
+  const char* name;
+};
+
+std::string shown_at(const nlohmann::ordered_json& result, const std::string& pointer) {
   const nlohmann::ordered_json::json_pointer place(pointer);
-  return cut != result.end() && cut->is_object() && cut->contains(place) ? shown(cut->at(place)) : "-";
+  return result.contains(place) ? shown(result.at(place)) : "-";
 }
 
-/// Says where a ring closed but strips of skin above it hide its inner edge.
-void print_hidden_edges(const nlohmann::ordered_json& result) {
-  std::string cuts;
-  for (const auto& [part, name] : {std::pair{"before", "as planned"}, std::pair{"after", "corrected"}}) {
-    if (shown_at(result, part, "/closed_loop") != "yes") continue;
-    const std::string seen = shown_at(result, part, "/inner_edge/outcome");
-    const bool is_measured = shown_at(result, part, "/inner_edge/abs_error_mm/mean") != "-";
-    if (seen != "-" && !is_measured) cuts += (cuts.empty() ? "" : " and ") + std::string(name);
+/// Prints the main measures of cuts side by side, and which rings closed although strips of skin hide their inner edge.
+void print_cuts(const nlohmann::ordered_json& result, const std::vector<ShownCut>& cuts) {
+  const auto print_row = [&](const char* text, const auto& cell_of) {
+    fmt::print("{:<36}", text);
+    for (const ShownCut& cut : cuts) fmt::print(" {:>16}", cell_of(cut));
+    fmt::print("\n");
+  };
+  if (cuts.size() > 1) print_row("simulated", [](const ShownCut& cut) { return std::string(cut.name); });
+  for (const CutLine& line : kCutLines)
+    print_row(line.text, [&](const ShownCut& cut) { return shown_at(result, cut.at + line.pointer); });
+  std::string hidden;
+  for (const ShownCut& cut : cuts) {
+    if (shown_at(result, cut.at + "/closed_loop") != "yes") continue;
+    const std::string seen = shown_at(result, cut.at + "/inner_edge/outcome");
+    const bool is_measured = shown_at(result, cut.at + "/inner_edge/abs_error_mm/mean") != "-";
+    if (seen != "-" && !is_measured) hidden += (hidden.empty() ? "" : " and ") + std::string(cut.name);
   }
-  if (cuts.empty()) return;
+  if (hidden.empty()) return;
   fmt::print(
       "No inner edge is seen from above {}: strips of skin still bridge the kerf. Look at the report, and try a "
       "finer mesh. Margins are those of the mid-line and of the kerf below.\n",
-      cuts);
+      hidden);
 }
 
 /// Prints how the error fell from pass to pass, against the mesh-resolution limit.
@@ -125,12 +140,16 @@ void print_risks(const nlohmann::ordered_json& result) {
 
 }  // namespace
 
+void print_cut(const nlohmann::ordered_json& result) {
+  if (!result.contains("closed_loop")) return print_lines(result, "");  // it was not even stretched
+  print_cuts(result, {{"", "along this path"}});
+  fmt::print("\n");
+  print_verdict(result.at("verdict"));
+  fmt::print("all numbers: --json, or incision.json in {}\n", result.at("folder").get<std::string>());
+}
+
 void print_study(const nlohmann::ordered_json& result) {
-  fmt::print("{:<36} {:>16} {:>16}\n", "simulated", "as planned", "corrected");
-  for (const StudyLine& line : kStudyLines) {
-    fmt::print("{:<36} {:>16} {:>16}\n", line.text, shown_at(result, "before", line.pointer), shown_at(result, "after", line.pointer));
-  }
-  print_hidden_edges(result);
+  print_cuts(result, {{"/before", "as planned"}, {"/after", "corrected"}});
   print_passes(result);
   print_risks(result);
   fmt::print("\n");

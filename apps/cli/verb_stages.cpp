@@ -10,9 +10,10 @@ void add_stage(Application& application, const char* name, const char* what, con
   auto case_path = std::make_shared<std::filesystem::path>();
   auto cut = std::make_shared<CutOptions>();
   CLI::App* verb = application.add_verb(name, what, example, [=](const CommonOptions& options) {
-    return run_step(options, [&](const auto& context) {
-      return steps::run_stages(case_request(*case_path, stage, options, *cut), context);
-    });
+    return run_step(
+        options,
+        [&](const auto& context) { return steps::run_stages(case_request(*case_path, stage, options, *cut), context); },
+        stage == Stage::Simulate ? print_cut : nullptr);
   });
   describe_output(*verb, kBesideCase);
   verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();

@@ -166,6 +166,10 @@ class LoopTest(CommandTest):
         self.assertFalse(result["closed_loop"])
         self.assertEqual(self.read("as_planned/incision.json")["outcome"], "open_loop")
         self.assertTrue((self.out / "as_planned" / "manifest.json").is_file())
+        shown = self.incise("simulate", "case", "-o", self.out).stdout
+        self.assertRegex(shown, r"outcome +open_loop\nring closed +no\nmid-line: mean \|error\|, mm ")
+        self.assertRegex(shown, rf"(?s)verdict +\w+\n.*all numbers: --json, or incision.json in {self.out}/as_planned\n$")
+        self.assertLess(len(shown.splitlines()), 40)
 
 
 class SameBitsTest(CommandTest):
