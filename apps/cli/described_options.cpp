@@ -29,30 +29,41 @@ class OneField : public Visitor {
     ++depth_;
     if (!is_in_list_) return sets() ? kUnchanged : size;
     count = kUnchanged;
-    return sets() ? texts_->size() : size;
+    if (sets()) return texts_->size();
+    is_absent = size == 0;
+    return is_absent ? kEveryKind : size;
   }
   void end_list() override {
     --depth_;
     is_in_list_ = false;
   }
-  bool optional(const Field& field, bool is_there) override { return (is_it(field) && sets()) || is_there; }
+  bool optional(const Field& field, bool is_there) override {
+    if (!is_it(field)) return is_there;
+    is_absent = !is_there;
+    return true;
+  }
   void number(const Field& field, double& value, const Range& range) override {
     if (!is_it(field, "FLOAT", range)) return;
     if (sets()) value = number_from(texts_->front(), range);
     shown = fmt::format("{}", value);
   }
   void integer(const Field& field, std::int64_t& value, const Range& range) override {
-    if (!is_it(field, "INT", range)) return;
+    if (is_in_list_) describe_it(field, "INT", range);
+    if (!is_in_list_ && !is_it(field, "INT", range)) return;
     if (sets()) {
-      const std::string& text = texts_->front();
+      const std::string& text = texts_->at(is_in_list_ ? item_++ : 0);
       const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
       const bool is_octal = text.size() > 1 && text.front() == '0';  // as C would read it
       const bool is_whole = error == std::errc{} && at == text.data() + text.size() && !is_octal;
       if (!is_whole || !contains(range, static_cast<double>(value))) refuse_text(text, whole_number(range));
     }
-    shown = fmt::format("{}", value);
+    shown += fmt::format("{}{}", shown.empty() ? "" : " ", value);
   }
-  void flag(const Field&, bool&) override {}
+  void flag(const Field& field, bool& value) override {
+    if (!is_it(field)) return;
+    count = 0;
+    if (sets()) value = true;
+  }
   void text(const Field& field, std::string& value) override {
     if (is_it(field, "TEXT") && sets()) value = texts_->front();
   }
@@ -77,8 +88,9 @@ class OneField : public Visitor {
   }
 
   bool is_found = false;
+  bool is_absent = false;                      ///< the field has no value by default
   std::string meaning, type, expected, shown;  ///< `shown`: the value as option text
-  std::size_t count = 1;                       ///< of texts; kUnchanged: any
+  std::size_t count = 1;                       ///< of texts; kUnchanged: any; 0: a flag
 
  private:
   bool is_it(const Field& field, const char* kind = "FLOAT", const Range& range = kAny) {
@@ -109,6 +121,7 @@ class OneField : public Visitor {
   const std::vector<std::string>* texts_;
   int depth_ = 0;
   bool is_in_list_ = false;
+  std::size_t item_ = 0;  // of the list
 };
 
 }  // namespace
@@ -128,15 +141,16 @@ CLI::Option* add_option_of(CLI::App& verb, std::string_view field, const std::fu
     if (help.ends_with('.')) help.pop_back();
     help += fmt::format(" ({})", known.expected);
   }
-  CLI::Option* option = verb.add_option_function<std::vector<std::string>>(
-      option_name(field),
-      [walk, name = std::string(field)](const std::vector<std::string>& texts) {
-        OneField set(name, &texts);
-        walk(set);
-      },
-      help);
+  const auto set = [walk, name = std::string(field)](const std::vector<std::string>& texts) {
+    OneField one(name, &texts);
+    walk(one);
+  };
+  if (known.count == 0)
+    return verb.add_flag_callback(
+        option_name(field), [set] { set({}); }, help);
+  CLI::Option* option = verb.add_option_function<std::vector<std::string>>(option_name(field), set, help);
   if (known.count != Visitor::kUnchanged) option->expected(static_cast<int>(known.count));
-  return option->type_name(known.type)->default_str(known.shown);
+  return option->type_name(known.type)->default_str(known.is_absent ? "" : known.shown);
 }
 
 }  // namespace incise::cli

@@ -14,7 +14,8 @@ namespace incise::cli {
 [[nodiscard]] std::string option_name(std::string_view field);
 
 /// Adds an option that sets a field of described settings. Its name, meaning, unit, range, choices and default come
-/// from the description. A value that the description does not allow is a CaseError.
+/// from the description; a yes or no becomes a flag, which sets it. A value that the description does not allow is a
+/// CaseError.
 /// @param walk  visits the settings, which must live as long as the verb.
 CLI::Option* add_option_of(CLI::App& verb, std::string_view field, const std::function<void(Visitor&)>& walk);
 

@@ -190,7 +190,35 @@ nlohmann::ordered_json summary_of(const RobotProgram& program, const ProgramChec
   return result;
 }
 
+constexpr Range kPlausibleToolMm{0.1, kLargestLengthMm};  // thinner or shorter is no instrument
+constexpr Range kWithinReachMm{-5000.0, 5000.0};          // of any arm
+constexpr Range kPlausiblePowerW{0.0, 400.0, true};       // no electrosurgical generator gives more (IEC 60601-2-2)
+
 }  // namespace
+
+void describe(Visitor& v, ExportRequest& r) {
+  v("format", r.form, "Format of the program; ros-trajectory: .yaml for ROS 2, .bag for ROS 1.");
+  v("motion", r.motion, "Moves of URScript: movep (blends, constant speed; the default) or servoj (timed joints).");
+  v("kind", r.kind, "Kind of path whose checks apply, in place of the path's own kind.");
+  v("intended", r.intended, "The path before correction, to check the deviation.");
+  v("surface", r.surface,
+    "The tissue in the robot's frame (.ply, .stl, .obj, .vtp; triangles or points): depth, arm, shaft and needle are "
+    "checked against it.");
+  v("registration", r.registration, "Result of `incise register` (.json): its quality is checked.");
+  v("power_w", r.power_w, "Power of the electrode, to check it and how far beside the needle its heat reaches.",
+    kPlausiblePowerW);
+  v("table_z_mm", r.setup.table_z_mm, "Height of the table's plane in the base frame.", kWithinReachMm);
+  v("needle_length_mm", r.checks.needle_length_mm, "Length of the needle; the shaft begins behind it.",
+    kPlausibleToolMm);
+  double shaft_mm = 2.0 * r.checks.shaft_radius_mm;
+  v("shaft_diameter_mm", shaft_mm, "Diameter of the instrument's shaft.", kPlausibleToolMm);
+  if (v.sets()) r.checks.shaft_radius_mm = 0.5 * shaft_mm;
+  v("depth_mm", r.checks.planned_depth_mm, "Planned depth.", kPositive);
+  v("close_margin_mm", r.checks.close_margin_mm, "Least distance from the tumour edge.", kPositive);
+  v("overlap_mm", r.overlap_mm, "How far a ring continues beyond its start; by default 8, for a mark 0.",
+    {0.0, kLargestLengthMm});
+  v("open", r.is_open, "The path is an open cut: closed, gap and encloses are not checked.");
+}
 
 void report_gate(const Verdict& verdict, const VerdictGate& gate, Monitor& monitor) {
   for (const VerdictReason& reason : verdict.reasons()) {

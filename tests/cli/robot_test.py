@@ -253,8 +253,8 @@ class ExportTest(RobotTest):
     def test_numbers_and_options_that_mean_nothing_are_refused(self):
         path = self.write(ring())
         for options, says in (
-            (("--power-w", 0), "--power-w: found 0, expected a number above 0"),
-            (("--needle-length-mm", -1), "--needle-length-mm: found -1, expected a number from 0.1 to 1000"),
+            (("--power-w", 0), "--power-w: found 0, expected a number in (0, 400]"),
+            (("--needle-length-mm", -1), "--needle-length-mm: found -1, expected a number in [0.1, 1000]"),
             (("--near-joints-deg", 0, 0, 0, 0, 0, "1e9"), "--near-joints-deg: found 1e9, expected a number from -360 to 360"),
             (("--depth-mm", "x"), "--depth-mm: found 'x'"),
             (("--format", "joint-csv", "--motion", "servoj"), "--motion: found servoj for --format joint-csv"),

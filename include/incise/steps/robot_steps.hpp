@@ -48,6 +48,8 @@ struct ExportRequest {
   std::vector<std::string> accepted;   ///< cautions of the verdict that a person accepts
   std::filesystem::path output;
 };
+/// Describes the fields that are options of `incise export`.
+void describe(Visitor& v, ExportRequest& r);
 /// Copies from a case what its own run uses for its program: arm, limits, power, heat, tool and overlap. The exported
 /// path must be of the case's specimen. Reads the scan or mesh of a case that names no specimen.
 /// @throws CaseError as require_round_tool; DataError if the scan or mesh cannot be read.
