@@ -266,8 +266,11 @@ Measured from_files(const EvaluateRequest& request) {
   return result;
 }
 
-/// @throws CaseError if the option names another specimen than the files.
+/// @throws CaseError if the option names no specimen, or another than the files.
 std::string specimen_of(const EvaluateRequest& request, const std::vector<std::filesystem::path>& inputs) {
+  if (!request.specimen_id.empty() && !is_specimen_id(request.specimen_id))
+    throw CaseError("command line", "--specimen-id", fmt::format("'{}'", request.specimen_id),
+                    std::string(kSpecimenIdForm));
   std::string stated = common_specimen_id(inputs);
   if (request.specimen_id.empty()) return stated;
   if (!are_of_different_specimens(request.specimen_id, stated)) return request.specimen_id;
@@ -275,6 +278,29 @@ std::string specimen_of(const EvaluateRequest& request, const std::vector<std::f
 }
 
 }  // namespace
+
+void describe(Visitor& v, EvaluateRequest& r) {
+  v("specimen_id", r.specimen_id, "Id of the specimen that was cut, as in its case: calibrate refuses any other.");
+  v("incision", r.incision, "The incision: .csv (x_mm,y_mm,z_mm), .vtp or .mrk.json.");
+  v("tumor", r.tumor, "The tumour edge, in the same formats and frame.");
+  v("line", r.line,
+    "Instead of --tumor, for an open cut: the line that --incision was to follow, same formats and frame.");
+  v("contour", r.contour, "What was measured; default: inner_edge in a photograph, centerline in files.");
+  v("red", r.red, "What the red line is: a thin line along the inner edge, or the painted kerf.");
+  v("mm_per_pixel", r.scale.mm_per_pixel, "Scale of the photograph.", kPositive);
+  v("ruler", r.scale.ruler, "Find the scale in the photograph: a ruler's ticks, or a solid scale bar.");
+  v("ruler_mm", r.scale.ruler_mm,
+    "Distance between neighbouring finest ticks of the ruler, by default 1 mm; for a bar: its length.", kPositive);
+  v("max_gap_mm", r.max_gap_mm,
+    "A red or green ring with a clearly longer gap (by 0.18 mm and 2 pixels) is open; if the gap of a red ring is "
+    "slightly longer, the verdict says so.",
+    {0.0, 10.0});
+  v("figure", r.figure,
+    "Figure to write: the photograph with the contours found in it (.png); for contour files: the signed error in "
+    "colour (.svg, .png).");
+  v("colors", r.colors, "Colours of the figure: safe for any colour vision, or as in the paper.");
+  v("open", r.is_open, "The incision round the tumour is an open curve.");
+}
 
 int ScaleRequest::ways() const {
   return (mm_per_pixel > 0.0) + ruler.has_value() + !two_points.empty() + !rectangle.empty();

@@ -54,6 +54,8 @@ struct EvaluateRequest {
   ErrorColors colors = ErrorColors::Safe;
   std::filesystem::path output;  ///< JSON; empty: no file
 };
+/// Describes the fields that are options of `incise evaluate`.
+void describe(Visitor& v, EvaluateRequest& r);
 /// Measures a cut. Not acceptable: an outcome of the cut other than success, or a verdict that refuses the measurement;
 /// see `outcome` and `verdict` of the JSON. @throws DataError, CaseError
 [[nodiscard]] StepResult evaluate_cut(const EvaluateRequest& request, const StepContext& context);
