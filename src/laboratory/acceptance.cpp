@@ -21,16 +21,6 @@ using Rows = nlohmann::ordered_json;
 constexpr const char* kAcceptanceFile = "acceptance.json";
 constexpr const char* kAcceptanceTable = "acceptance.csv";
 
-Rows asked_json(const AcceptanceSettings& settings) {
-  return {{"specimens", settings.specimens},
-          {"factors", laboratory::names_of_factors(settings.factors)},
-          {"speed_mm_s", to_json(settings.speed_mm_s)},
-          {"power_w", to_json(settings.power_w)},
-          {"overrides", settings.overrides},
-          {"paper_pass", settings.with_paper_pass},
-          {"tets", settings.tets}};
-}
-
 /// Cuts as planned, then along the paper's correction.
 void cut_twice(const AcceptanceSettings& settings, const std::filesystem::path& root, std::uint64_t series,
                Monitor& monitor, Trial& trial, Rows& row) {
@@ -105,6 +95,18 @@ std::string csv_of(const Rows& rows) {
 
 }  // namespace
 
+void describe(Visitor& v, AcceptanceSettings& s) {
+  v("specimens", s.specimens, "Number of specimens; their seeds count up from --seed.", {1.0, 200.0});
+  std::vector<second_bench::Factor> factors(s.factors.begin(), s.factors.end());
+  v("factors", factors, "Factors of laboratory 2 that vary.");
+  if (v.sets()) s.factors = {factors.begin(), factors.end()};
+  v("speed_mm_s", s.speed_mm_s, "Speed of every cut; by default as prescribed.", {1.0, 15.0});
+  v("power_w", s.power_w, "Power of every cut; by default as prescribed.", {1.0, 120.0});
+  v("overrides", s.overrides, "Failed checks of the program to override.");
+  v("paper_pass", s.with_paper_pass, "Whether each specimen is also cut along the paper's correction.");
+  v("tets", s.tets, "Target number of tets of the planner's meshes.", kPositive);
+}
+
 nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const std::filesystem::path& output,
                                     const RunContext& run, Workers& workers, Monitor& monitor) {
   const steps::StepContext context{run, workers, monitor};
@@ -126,12 +128,12 @@ nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const st
   });
   Rows result;
   result["specimen_is"] = "virtual";
-  result["settings"] = asked_json(settings);
+  result["settings"] = to_json(settings);
   result["summary"] = summary_of_rows(rows);
   result["rows"] = rows;
   write_atomically(output / kAcceptanceTable, csv_of(rows));
   const double wall_s = context.wall_s();
-  write_manifest(output, steps::manifest_of(run, asked_json(settings).dump(), {}, wall_s));
+  write_manifest(output, steps::manifest_of(run, to_json(settings).dump(), {}, wall_s));
   result["wall_s"] = wall_s;
   write_json(output / kAcceptanceFile, result);
   return result;

@@ -7,6 +7,7 @@
 
 #include <incise/core/described_json.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/core/version.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/folder_lock.hpp>
@@ -49,22 +50,6 @@ std::vector<RivalPath> rivals_of(const ExperimentSettings& settings) {
             RivalPath::Photographs, RivalPath::PaperPass, RivalPath::Uncalibrated,    RivalPath::Hybrid,
             RivalPath::Learned,     RivalPath::Robust};
   return settings.with_paper_pass ? std::vector{RivalPath::PaperPass} : std::vector<RivalPath>{};
-}
-
-ExperimentJson settings_json(const ExperimentSettings& settings) {
-  return {{"bench", settings.bench},
-          {"specimens", settings.specimens},
-          {"outside", to_json(settings.outside)},
-          {"quick", settings.is_quick},
-          {"rivals", settings.with_rivals},
-          {"paper_pass", settings.with_paper_pass},
-          {"known_physics", settings.with_known_physics},
-          {"withheld_force", settings.with_withheld_force},
-          {"learning", settings.learning},
-          {"overrides", settings.overrides},
-          {"tets", settings.tets},
-          {"rule", to_string(settings.rule)},
-          {"truth", settings.truth.string()}};
 }
 
 ExperimentJson comparison_json(const PathComparison& paths) {
@@ -118,33 +103,11 @@ ChosenTool tool_of(const ExperimentJson& calibration) {
           calibration.at("posterior").at("bias_mm").at("mean").get<double>()};
 }
 
-/// The second bench has specimens unlike the others among its own, and no planner that knows its physics.
-ExperimentSettings possible(ExperimentSettings settings) {
-  INCISE_REQUIRE(settings.bench == 1 || settings.bench == 2,
-                 fmt::format("expected bench 1 or 2, found {}", settings.bench));
-  INCISE_REQUIRE(settings.specimens > 0 && settings.specimens % 2 == 0,
-                 fmt::format("expected an even number of specimens above 0, found {}", settings.specimens));
-  if (settings.bench == 2 && settings.outside)
-    throw CaseError("command line", "--outside", fmt::format("{} on the second bench", *settings.outside),
-                    "the option only with the first bench",
-                    "Specimens of the second bench differ from one another anyway.");
-  const bool is_ascending =
-      std::ranges::adjacent_find(settings.learning, std::greater_equal<>()) == settings.learning.end();
-  INCISE_REQUIRE(
-      settings.learning.empty() || (settings.learning.front() > 0 && is_ascending),
-      fmt::format("expected ascending numbers of photographs above 0, found {}", fmt::join(settings.learning, ", ")));
-  if (!settings.learning.empty() && !settings.with_rivals)
-    throw CaseError("command line", "--learning", "no rivals", "the rivals, with which the learning is compared");
-  if (settings.bench == 2 && settings.with_known_physics)
-    throw CaseError("command line", "--known-physics", "the second bench", "the option only with the first bench");
-  return settings;
-}
-
 class Experiment {
  public:
   Experiment(ExperimentSettings settings, std::filesystem::path output, RunContext run, Workers& workers,
              Monitor& monitor)
-      : settings_(possible(std::move(settings))),
+      : settings_(std::move(settings)),
         context_(std::move(run)),
         workers_(workers),
         monitor_(monitor),
@@ -239,7 +202,7 @@ ExperimentJson Experiment::run() {
     AtomicFolder folder(root_ / "advice");
     write_json(folder.path() / "advice.json", advice);
     draw_advice(folder.path(), advice);
-    write_manifest(folder.path(), steps::manifest_of(context_, settings_json(settings_).dump(), {}, whole.wall_s()));
+    write_manifest(folder.path(), steps::manifest_of(context_, to_json(settings_).dump(), {}, whole.wall_s()));
     folder.commit();
   }
   write_commands();
@@ -281,7 +244,7 @@ ExperimentJson Experiment::run() {
   }
   result["commands"] = (root_ / "commands.sh").string();
   ReportData page = experiment_report(trials_, paths, result, root_);
-  const ExperimentJson asked = settings_json(settings_);
+  const ExperimentJson asked = to_json(settings_);
   for (const auto& [name, value] : asked.items()) page.settings.push_back({name, value.dump(), ""});
   page.provenance = {{"version", std::string(version()), ""},
                      {"commit", std::string(source_commit()), ""},
@@ -292,8 +255,7 @@ ExperimentJson Experiment::run() {
   write_report(page, root_ / "report.html");
   result["report"] = (root_ / "report.html").string();
   result["wall_s"] = whole.wall_s();
-  write_manifest(root_,
-                 steps::manifest_of(context_, settings_json(settings_).dump(), {}, result["wall_s"].get<double>()));
+  write_manifest(root_, steps::manifest_of(context_, to_json(settings_).dump(), {}, result["wall_s"].get<double>()));
   write_json(root_ / "study.json", result);
   return result;
 }
@@ -711,8 +673,59 @@ void Experiment::write_commands() const {
 
 namespace incise {
 
+void describe(Visitor& v, ExperimentSettings& s) {
+  v("bench", s.bench,
+    "1: the first laboratory, whose specimens are much alike; 2: the second, whose specimens, margins, depths and "
+    "speeds differ widely (`incise schema bench2`). Specimens of laboratory 2 are one series, that of --seed.",
+    {1.0, 2.0});
+  v("specimens", s.specimens,
+    "Number of specimens, even: half to calibrate on, half to test; 4: as in the paper, and one outside the calibrated "
+    "range. Their seeds count up from --seed, so start another experiment beyond the last seed of this one.",
+    {2.0, 200.0});
+  v("outside", s.outside,
+    "Further specimens unlike those calibrated on (stiff, oedematous, scarred, oedematous, soft in turn), to compare "
+    "the advice of `assess` with what happens; by default one if there are four specimens, otherwise none. First "
+    "laboratory only.",
+    {0.0, 200.0});
+  v("quick", s.is_quick, "Skip the grid of 25 pairs of speed and dullness (Table I).");
+  v("rivals", s.with_rivals, "Whether test specimens are also cut along every rival's path.");
+  v("paper_pass", s.with_paper_pass, "With --no-rivals: still cut along the paper's single radial correction.");
+  v("known_physics", s.with_known_physics,
+    "Also cut every test specimen as a planner that knows the bench's physics would (first laboratory).");
+  v("withheld_force", s.with_withheld_force, "Also run `assess` as if the pull had not been measured.");
+  v("learning", s.learning,
+    "Also cut test specimens along forecasts from only the first photographs, as many as each of these numbers (such "
+    "as 1,2,4,8), without and with simulation, to show what photographs are worth.",
+    {1.0, 100.0});
+  v("overrides", s.overrides, "Failed checks of every program to override.");
+  v("tets", s.tets, "Number of tetrahedra of the planner's meshes.", {5000.0, 500000.0});
+  v("rule", s.rule, "Rule of the planner's simulated cuts: cut.rule of its cases.");
+  std::string truth = s.truth.string();
+  v("truth", truth, "Folder for the hidden specimens; by default truth/ in the output.");
+  if (v.sets()) s.truth = truth;
+}
+
+std::vector<Problem> validate(const ExperimentSettings& s) {
+  std::vector<Problem> problems = problems_of(s);
+  if (s.specimens % 2 != 0)
+    problems.push_back(
+        {"specimens", fmt::format("{}", s.specimens), "an even number: half to calibrate on, half to test"});
+  if (std::ranges::adjacent_find(s.learning, std::greater_equal<>()) != s.learning.end())
+    problems.push_back({"learning", fmt::format("{}", fmt::join(s.learning, ",")), "ascending numbers"});
+  if (!s.learning.empty() && !s.with_rivals)
+    problems.push_back({"learning", "no rivals", "the rivals, with which the learning is compared"});
+  if (s.bench == 2 && s.outside)
+    problems.push_back({"outside", fmt::format("{} on the second bench", *s.outside),
+                        "the option only with the first bench",
+                        "Specimens of the second bench differ from one another anyway."});
+  if (s.bench == 2 && s.with_known_physics)
+    problems.push_back({"known_physics", "the second bench", "the option only with the first bench"});
+  return problems;
+}
+
 nlohmann::ordered_json experiment(const ExperimentSettings& settings, const std::filesystem::path& output,
                                   const RunContext& run, Workers& workers, Monitor& monitor) {
+  require_none(validate(settings));
   return laboratory::Experiment(settings, output, run, workers, monitor).run();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <incise/core/describe.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/workers.hpp>
 #include <incise/second_bench/specimen.hpp>
@@ -25,6 +26,7 @@ struct AcceptanceSettings {
   bool with_paper_pass = true;  ///< cut each specimen also along the paper's correction
   int tets = 25000;             ///< target number of tets of the planner's meshes
 };
+void describe(Visitor& v, AcceptanceSettings& s);
 
 /// Cuts specimens of the second laboratory as planned and along the paper's single correction (its tool, its pass, the
 /// stiffness of each specimen from its pull), and measures the photographs. Nothing is calibrated, and only the paper's
