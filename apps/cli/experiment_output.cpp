@@ -7,6 +7,12 @@
 namespace incise::cli {
 namespace {
 
+/// Returns " (-0.10 to +0.32)", or nothing for a null.
+std::string interval_text(const nlohmann::ordered_json& ends) {
+  if (!ends.is_array()) return "";
+  return fmt::format(" ({:+.2f} to {:+.2f})", ends[0].get<double>(), ends[1].get<double>());
+}
+
 void print_area(const char* name, const nlohmann::ordered_json& area) {
   if (!area.is_object()) return;
   fmt::print("{:<34} {:.2f} ({:.2f} to {:.2f}); {} of {} were worse\n", name, area.at("area").get<double>(),
@@ -24,9 +30,7 @@ void print_paths(const char* of, const nlohmann::ordered_json& result) {
     if (path.at("difference_mm").is_number()) against = fmt::format("{:+.2f}", path.at("difference_mm").get<double>());
     if (path.at("difference_mm").is_number() && path.at("compared") != path.at("pairs"))
       against += fmt::format(" of {}", path.at("compared").get<std::size_t>());
-    if (path.at("confidence_mm").is_array())
-      against += fmt::format(" ({:+.2f} to {:+.2f})", path.at("confidence_mm")[0].get<double>(),
-                             path.at("confidence_mm")[1].get<double>());
+    against += interval_text(path.at("confidence_mm"));
     const std::string mean =
         path.at("mean_mm").is_number() ? fmt::format("{:.2f}", path.at("mean_mm").get<double>()) : "-";
     const auto count = [&path = path](const char* key) { return path.at(key).template get<std::size_t>(); };
@@ -48,13 +52,11 @@ void print_learning(const nlohmann::ordered_json& curve) {
   for (const auto& point : curve) {
     const auto& pair = point.at("pair");
     if (!pair.at("difference_mm").is_number()) continue;
-    std::string difference = fmt::format("{:+.2f}", pair.at("difference_mm").get<double>());
-    if (const auto& ends = pair.at("confidence_mm"); ends.is_array())
-      difference += fmt::format(" ({:+.2f} to {:+.2f})", ends[0].get<double>(), ends[1].get<double>());
-    fmt::print("{:<34} {:>10.2f} {:>10.2f} {:>9}  {}\n",
+    fmt::print("{:<34} {:>10.2f} {:>10.2f} {:>9}  {:+.2f}{}\n",
                point.at("photographs").is_null() ? std::string("all") : point.at("photographs").dump(),
                pair.at("first_mm").get<double>(), pair.at("second_mm").get<double>(),
-               pair.at("compared").get<std::size_t>(), difference);
+               pair.at("compared").get<std::size_t>(), pair.at("difference_mm").get<double>(),
+               interval_text(pair.at("confidence_mm")));
   }
 }
 
@@ -125,13 +127,10 @@ void print_pooled(const nlohmann::ordered_json& result) {
   print_paths("specimens like the calibration's", result.at("like"));
   const auto& robust = result.at("robust_against_default");
   if (robust.at("difference_mm").is_number()) {
-    std::string interval;
-    if (const auto& ends = robust.at("confidence_mm"); ends.is_array())
-      interval = fmt::format(" ({:+.2f} to {:+.2f})", ends[0].get<double>(), ends[1].get<double>());
     fmt::print("{:<34} {:+.2f} mm{} on {} specimens; close margins of {}: {} by default, {} robust\n",
-               "robust, difference from default", robust.at("difference_mm").get<double>(), interval,
-               robust.at("compared").get<std::size_t>(), robust.at("closed").get<std::size_t>(),
-               robust.at("close_margins_first").get<std::size_t>(),
+               "robust, difference from default", robust.at("difference_mm").get<double>(),
+               interval_text(robust.at("confidence_mm")), robust.at("compared").get<std::size_t>(),
+               robust.at("closed").get<std::size_t>(), robust.at("close_margins_first").get<std::size_t>(),
                robust.at("close_margins_second").get<std::size_t>());
   }
   print_learning(result.at("learning"));
