@@ -53,10 +53,12 @@ void refuse_input_as_output(const std::string& option, const std::filesystem::pa
 }
 
 bool is_same_or_within(const std::filesystem::path& inner, const std::filesystem::path& outer) {
-  // For a name that does not exist yet, only an absolute path is resolved.
-  const auto a = std::filesystem::weakly_canonical(std::filesystem::absolute(inner));
-  const auto b =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(outer.has_filename() ? outer : outer.parent_path()));
+  // For a name that does not exist yet, only an absolute path is resolved. "a/", "a/." and "a" are the same.
+  const auto plain = [](const std::filesystem::path& path) {
+    const auto resolved = std::filesystem::weakly_canonical(std::filesystem::absolute(path));
+    return (resolved.lexically_normal() / "").parent_path();
+  };
+  const auto a = plain(inner), b = plain(outer);
   return std::mismatch(b.begin(), b.end(), a.begin(), a.end()).first == b.end();
 }
 
@@ -93,11 +95,6 @@ std::filesystem::path CommonOptions::required_output(const char* example) const 
   return output;
 }
 
-CLI::App* Application::add_verb(const std::string& name, const std::string& what, const std::string& example,
-                                std::function<int(const CommonOptions&)> run) {
-  return add_verb_to(app_, name, what.empty() ? line_of(name) : what, example, std::move(run));
-}
-
 CLI::App* Application::add_group(const std::string& group, const std::string& what, const std::string& example) {
   CLI::App* verbs = app_.add_subcommand(group, what);
   verbs->require_subcommand(1);
@@ -109,7 +106,7 @@ CLI::App* Application::add_verb_to(CLI::App& group, const std::string& name, con
                                    const std::string& example, std::function<int(const CommonOptions&)> run) {
   auto options = std::make_shared<CommonOptions>();
   options->command_line = command_line_;
-  CLI::App* verb = group.add_subcommand(name, what);
+  CLI::App* verb = group.add_subcommand(name, what.empty() ? line_of(name) : what);
   verb->footer("\nExample:\n  " + example + "\n");
   const CLI::Option* given = verb->add_option("-o,--output", options->output, "File or folder to write (required)");
   verb->add_flag("--json", options->json, "Print one JSON object on standard output");

@@ -86,25 +86,23 @@ class Application {
 
   /// @param what  shown in --help if the line in the list of verbs (verb_list.cpp) does not say all; else "".
   /// @param example  shown at the end of --help.
-  CLI::App* add_verb(const std::string& name, const std::string& what, const std::string& example,
-                     std::function<int(const CommonOptions&)> run);
-  /// As above, for a verb with its own options, which `run` takes before the common ones.
-  template <typename Arguments>
+  /// @param run  takes the verb's own options, then the common ones.
+  /// @param group  that the verb is added to, see add_group.
+  template <typename Arguments, typename Run>
   std::pair<CLI::App*, Arguments&> add_verb(const std::string& name, const std::string& what,
-                                            const std::string& example,
-                                            int (*run)(const Arguments&, const CommonOptions&)) {
+                                            const std::string& example, Run run, CLI::App* group = nullptr) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* verb =
-        add_verb(name, what, example, [=](const CommonOptions& options) { return run(*arguments, options); });
-    return {verb, *arguments};
+    const auto run_with = [=](const CommonOptions& options) { return run(*arguments, options); };
+    return {add_verb_to(group != nullptr ? *group : app_, name, what, example, run_with), *arguments};
   }
   /// Adds a verb of several words: `group` holds the verbs that follow it, of which one must be given.
   CLI::App* add_group(const std::string& group, const std::string& what, const std::string& example);
-  CLI::App* add_verb_to(CLI::App& group, const std::string& name, const std::string& what, const std::string& example,
-                        std::function<int(const CommonOptions&)> run);
   [[nodiscard]] int status() const { return status_; }
 
  private:
+  CLI::App* add_verb_to(CLI::App& group, const std::string& name, const std::string& what, const std::string& example,
+                        std::function<int(const CommonOptions&)> run);
+
   CLI::App& app_;
   std::string command_line_;
   int status_ = kDone;
@@ -112,8 +110,6 @@ class Application {
 
 /// Says in a verb's help what happens without -o. Unless a verb says so, -o is required (required_output).
 void describe_output(CLI::App& verb, const std::string& without);
-/// Of the verbs that write beside the case, see output_of.
-inline constexpr const char* kBesideCase = "by default `out` in the case's folder";
 inline constexpr const char* kNothingByDefault = "by default nothing is written";
 
 /// Prints the result: with --json the one object on standard output, else a short table.
@@ -130,7 +126,7 @@ void print_study(const nlohmann::ordered_json& result);
 void add_forecast(Application& application);
 void add_assess(Application& application);
 void add_bench(Application& application);  ///< bench make, bench cut, bench floor, and those of add_bench_series
-void add_bench_series(Application& application, CLI::App& bench);  ///< bench accept, bench factors, bench pool
+void add_bench_series(Application& application, CLI::App* bench);  ///< bench accept, bench factors, bench pool
 void add_calibrate(Application& application);
 void add_demo(Application& application);
 void add_run(Application& application);

@@ -15,6 +15,11 @@ std::filesystem::path output_of(const std::filesystem::path& case_path, const Co
   return output_beside(case_path);
 }
 
+CLI::Option* add_case(CLI::App& verb, std::filesystem::path& case_path) {
+  describe_output(verb, "by default `out` in the case's folder");
+  return verb.add_option("case", case_path, "Case file, or a folder with case.yaml")->required();
+}
+
 void add_cut_options(CLI::App& verb, CutOptions& options) {
   verb.add_option("--frames", options.frames,
                   "Number of moments of the cut to keep for pictures; overrides the case's cut.frames")
@@ -26,25 +31,23 @@ void add_cut_options(CLI::App& verb, CutOptions& options) {
       ->check(CLI::Range(0.0, kLongestCheckpointS));
 }
 
-steps::CaseRequest case_request(const std::filesystem::path& case_path, Stage until, const CommonOptions& options,
-                                const CutOptions& cut) {
-  CaseFile file = read_case_with_inputs(case_path);
-  if (cut.frames) file.settings.frames = *cut.frames;
-  if (cut.method) file.settings.compensation.method = *cut.method;
+steps::CaseRequest case_request(const CaseArguments& of, Stage until, const CommonOptions& options) {
+  CaseFile file = read_case_with_inputs(of.case_path);
+  if (of.cut.frames) file.settings.frames = *of.cut.frames;
+  if (of.cut.method) file.settings.compensation.method = *of.cut.method;
   if (const std::vector<Problem> problems = validate(file.settings.compensation); !problems.empty()) {
     throw CaseError("case", "compensation." + problems[0].path, problems[0].found, problems[0].expected,
                     problems[0].hint)
-        .in_file(case_path.string());
+        .in_file(of.case_path.string());
   }
-  return {std::move(file), output_of(case_path, options), {until, cut.must_resume, cut.checkpoint_s}};
+  return {std::move(file), output_of(of.case_path, options), {until, of.cut.must_resume, of.cut.checkpoint_s}};
 }
 
-int run_whole_loop(const std::filesystem::path& case_path, const std::filesystem::path& output,
-                   const CommonOptions& options, const CutOptions& cut) {
-  steps::CaseRequest request = case_request(case_path, Stage::Verify, options, cut);
+int run_whole_loop(const CaseArguments& of, const std::filesystem::path& output, const CommonOptions& options) {
+  steps::CaseRequest request = case_request(of, Stage::Verify, options);
   request.output = output;
   return run_step(
-      options, [&](const auto& context) { return steps::run_loop(request, cut.accepted, context); }, print_study);
+      options, [&](const auto& context) { return steps::run_loop(request, of.cut.accepted, context); }, print_study);
 }
 
 }  // namespace incise::cli

@@ -5,9 +5,8 @@
 namespace incise::cli {
 namespace {
 
-struct AssessOptions {
-  std::filesystem::path case_path, registration;
-  CutOptions cut;
+struct AssessOptions : CaseArguments {
+  std::filesystem::path registration;
   steps::CalibratedRequest calibrated;
 };
 
@@ -34,8 +33,8 @@ int assess_case(const AssessOptions& chosen, const CommonOptions& options) {
   return run_step(
       options,
       [&](const auto& context) {
-        return steps::assess_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), calibration,
-                                  chosen.registration, context);
+        return steps::assess_case(case_request(chosen, Stage::Verify, options), calibration, chosen.registration,
+                                  context);
       },
       print_assessment);
 }
@@ -51,8 +50,7 @@ void add_assess(Application& application) {
       "incise assess specimen --calibration calibration/calibration.json --registration "
       "registration/registration.json -o out",
       assess_case);
-  describe_output(*verb, kBesideCase);
-  verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
+  add_case(*verb, a.case_path);
   add_calibrated_options(*verb, a.calibrated)->required();
   verb->add_option("--registration", a.registration, "registration.json of `incise register` for this specimen")
       ->required();

@@ -59,7 +59,7 @@ void print_audit(const Audit& audit, const PublishedTable& table) {
   }
 }
 
-int run(const AuditArguments& given, const CommonOptions& options) {
+int run_audit(const AuditArguments& given, const CommonOptions& options) {
   AuditArguments arguments = given;
   if (arguments.grain > 0.0) arguments.settings.grain = arguments.grain;
   require_valid(problems_of(arguments.settings));
@@ -77,7 +77,7 @@ int run(const AuditArguments& given, const CommonOptions& options) {
 void add_audit(Application& application) {
   auto [verb, a] = application.add_verb<AuditArguments>(
       "audit", "Find the rows of a published table that no data can produce; exit status 4 if there are any",
-      "incise audit data/published_tables/table_1.csv", run);
+      "incise audit data/published_tables/table_1.csv", run_audit);
   describe_output(*verb, kNothingByDefault);
   verb->add_option("table", a.table,
                    "Table with the digits as printed (.csv): mean_mm, sd_mm; optional max_mm, min_mm, n, "

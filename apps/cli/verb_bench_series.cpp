@@ -1,5 +1,6 @@
 #include "bench_options.hpp"
 #include "bench_output.hpp"
+#include "described_options.hpp"
 #include "experiment_output.hpp"
 #include "option_checks.hpp"
 
@@ -9,8 +10,6 @@
 #include <incise/laboratory/pooling.hpp>
 
 #include <fmt/format.h>
-
-#include <memory>
 
 namespace incise::cli {
 namespace {
@@ -25,7 +24,7 @@ int print_trials(const CommonOptions& options, const BenchJson& result, void (*p
   return kDone;
 }
 
-int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
+int accept(const AcceptanceSettings& settings, const CommonOptions& options) {
   const BenchJson result =
       run_in_folder(options, "acceptance", [&](const auto& root, const auto& context, auto& workers, auto& console) {
         return accept_bench(settings, root, context, workers, console);
@@ -33,7 +32,10 @@ int accept(const CommonOptions& options, const AcceptanceSettings& settings) {
   return print_trials(options, result, print_acceptance, result.at("summary"));
 }
 
-int screen(const CommonOptions& options, const ScreeningSettings& settings) {
+int screen(const ScreeningSettings& settings, const CommonOptions& options) {
+  if (settings.factors.size() < 2)
+    throw CaseError("command line", "--factors", fmt::format("{} of the factors", settings.factors.size()),
+                    "at least two: with one, the effect of chance is not known");
   const BenchJson result =
       run_in_folder(options, "factors", [&](const auto& root, const auto& context, auto& workers, auto& console) {
         return screen_factors(settings, root, context, workers, console);
@@ -45,7 +47,7 @@ int screen(const CommonOptions& options, const ScreeningSettings& settings) {
   return print_trials(options, result, print_factors, summary);
 }
 
-int pool(const CommonOptions& options, const std::vector<std::filesystem::path>& experiments) {
+int pool(const std::vector<std::filesystem::path>& experiments, const CommonOptions& options) {
   const std::filesystem::path output = options.required_output("pooled");
   refuse_input_as_output("-o", output, experiments);
   BenchJson result;
@@ -59,53 +61,40 @@ int pool(const CommonOptions& options, const std::vector<std::filesystem::path>&
 
 }  // namespace
 
-void add_bench_series(Application& application, CLI::App& bench) {
-  auto accepted = std::make_shared<AcceptanceSettings>();
-  CLI::App* verb = application.add_verb_to(
-      bench, "accept",
+void add_bench_series(Application& application, CLI::App* bench) {
+  auto [accepting, accepted] = application.add_verb<AcceptanceSettings>(
+      "accept",
       "Cut specimens of laboratory 2 as planned and along the paper's correction, to judge the laboratory without the "
       "planner that it will judge. Run it again to continue where it stopped",
-      "incise bench accept --seed 1 -o acceptance",
-      [accepted](const CommonOptions& options) { return accept(options, *accepted); });
-  verb->add_option("--specimens", accepted->specimens,
-                   "Number of specimens, 1 to 200; their seeds count up from --seed")
-      ->check(whole_between("--specimens", 1, 200));
-  add_factors(*verb, kVaries, [accepted](second_bench::Factors factors) { accepted->factors = std::move(factors); });
-  verb->add_option("--speed-mm-s", accepted->speed_mm_s, "Of every cut; by default as prescribed")
-      ->check(CLI::Range(1.0, 15.0));
-  verb->add_option("--power-w", accepted->power_w, "Of every cut; by default as prescribed")
-      ->check(CLI::Range(1.0, 120.0));
-  add_overrides(*verb, accepted->overrides);
-  verb->add_flag("!--no-paper-pass", accepted->with_paper_pass, "Cut only as planned");
+      "incise bench accept --seed 1 -o acceptance", accept, bench);
+  add_options_of(*accepting, accepted, "specimens", "speed_mm_s", "power_w");
+  add_factors(*accepting, kVaries,
+              [&settings = accepted](second_bench::Factors factors) { settings.factors = std::move(factors); });
+  add_overrides(*accepting, accepted.overrides);
+  accepting->add_flag("!--no-paper-pass", accepted.with_paper_pass, "Cut only as planned");
 
-  auto screened = std::make_shared<ScreeningSettings>();
-  verb =
-      application.add_verb_to(bench, "factors",
-                              "Find which factors of laboratory 2 drive the error as planned: a fractional "
-                              "factorial of up to 32 cuts of each specimen. Run it again to continue where it stopped",
-                              "incise bench factors --seed 1 -o factors",
-                              [screened](const CommonOptions& options) { return screen(options, *screened); });
-  verb->add_option("--specimens", screened->specimens, "Number of specimens, 1 to 24; their seeds count up from --seed")
+  auto [screening, screened] = application.add_verb<ScreeningSettings>(
+      "factors",
+      "Find which factors of laboratory 2 drive the error as planned: a fractional factorial of up to 32 cuts of each "
+      "specimen. Run it again to continue where it stopped",
+      "incise bench factors --seed 1 -o factors", screen, bench);
+  screening
+      ->add_option("--specimens", screened.specimens, "Number of specimens, 1 to 24; their seeds count up from --seed")
       ->check(whole_between("--specimens", 1, 24));
-  add_factors(
-      *verb,
-      "Factors of laboratory 2 to switch; the others stay off. By default all, with 32 cuts of each specimen; up to 8 "
-      "factors need 16 cuts, 3 or 4 need 8, two need 4",
-      [screened](second_bench::Factors factors) {
-        if (factors.size() < 2)
-          throw CaseError("command line", "--factors", fmt::format("{} of the factors", factors.size()),
-                          "at least two: with one, the effect of chance is not known");
-        screened->factors = std::move(factors);
-      });
-  add_overrides(*verb, screened->overrides);
+  add_factors(*screening,
+              "Factors of laboratory 2 to switch; the others stay off. By default all, with 32 cuts of each specimen; "
+              "up to 8 factors need 16 cuts, 3 or 4 need 8, two need 4",
+              [&settings = screened](second_bench::Factors factors) { settings.factors = std::move(factors); });
+  add_overrides(*screening, screened.overrides);
 
-  auto pooled = std::make_shared<std::vector<std::filesystem::path>>();
-  verb = application.add_verb_to(bench, "pool",
-                                 "Pool several finished experiments: compare every path with the best one without "
-                                 "simulation, and the advice with the outcome",
-                                 "incise bench pool series1 series2 -o pooled",
-                                 [pooled](const CommonOptions& options) { return pool(options, *pooled); });
-  verb->add_option("experiments", *pooled, "Folders of `incise experiment`, two or more")->required()->expected(2, -1);
+  auto [pooling, pooled] = application.add_verb<std::vector<std::filesystem::path>>(
+      "pool",
+      "Pool several finished experiments: compare every path with the best one without simulation, and the advice with "
+      "the outcome",
+      "incise bench pool series1 series2 -o pooled", pool, bench);
+  pooling->add_option("experiments", pooled, "Folders of `incise experiment`, two or more")
+      ->required()
+      ->expected(2, -1);
 }
 
 }  // namespace incise::cli

@@ -12,11 +12,6 @@
 namespace incise::cli {
 namespace {
 
-struct CalibrateArguments {
-  steps::CalibrateRequest request;
-  std::string method = "fit";
-};
-
 /// Requires one entry per case, or none if that is allowed.
 void require_one_each(const char* option, std::size_t found, std::size_t cases, const char* what) {
   if (found == cases) return;
@@ -32,10 +27,8 @@ void require_different_values(const char* option, std::vector<double> values) {
     throw CaseError("command line", option, fmt::format("{} twice", *twice), "each value once");
 }
 
-int calibrate_cases(const CalibrateArguments& arguments, const CommonOptions& options) {
-  steps::CalibrateRequest request = arguments.request;
-  CalibrationRequest& asked = request.request;
-  asked.method = value_named<CalibrationMethod>(arguments.method);
+int calibrate_cases(steps::CalibrateRequest request, const CommonOptions& options) {
+  const CalibrationRequest& asked = request.request;
   require_valid(validate(asked));
   require_different_values("--speeds-mm-s", asked.speeds_mm_s);
   require_different_values("--dullnesses", asked.dullnesses);
@@ -60,27 +53,25 @@ int calibrate_cases(const CalibrateArguments& arguments, const CommonOptions& op
 }  // namespace
 
 void add_calibrate(Application& application) {
-  auto [verb, a] = application.add_verb<CalibrateArguments>(
+  auto [verb, a] = application.add_verb<steps::CalibrateRequest>(
       "calibrate",
       "Find the simulated speed and dullness that reproduce photographed cuts. fit: from the signed error round the "
       "ring, with few simulations; gives a posterior, and states which parameters the data identify. paper: 25 pairs, "
       "scored as in the paper. If interrupted, it keeps every finished simulation, and the same command continues",
       "incise calibrate s1 s2 --observed s1/cut.json s2/cut.json -o calibration", calibrate_cases);
-  verb->add_option("case", a.request.cases,
-                   "Case files, or folders with case.yaml: how each specimen was held, and its path")
+  verb->add_option("case", a.cases, "Case files, or folders with case.yaml: how each specimen was held, and its path")
       ->required();
-  verb->add_option("--observed", a.request.observed,
+  verb->add_option("--observed", a.observed,
                    "Files of `incise evaluate PHOTO -o`, one for each case in the same order; up in the picture is "
                    "+y of the case (seen along -z)")
       ->required();
-  verb->add_option("--method", a.method, "fit or paper")->check(CLI::IsMember({"fit", "paper"}));
-  verb->add_option("--stretch-force-n", a.request.forces_n,
+  verb->add_option("--stretch-force-n", a.forces_n,
                    "Pull measured on each specimen when stretched; it determines the stiffness to 5 %")
       ->check(above_zero("--stretch-force-n"));
-  verb->add_option("--registration", a.request.registrations,
+  verb->add_option("--registration", a.registrations,
                    "Files of `incise register`, one for each case; the calibration keeps them, and `incise assess` "
                    "compares further specimens with them");
-  add_options_of(*verb, a.request.request, "speeds_mm_s", "dullnesses", "drag_lengths_mm", "second_drag_lengths_mm");
+  add_options_of(*verb, a.request, "method", "speeds_mm_s", "dullnesses", "drag_lengths_mm", "second_drag_lengths_mm");
 }
 
 }  // namespace incise::cli

@@ -13,10 +13,6 @@
 namespace incise::cli {
 namespace {
 
-struct CompareArguments : steps::CompareRequest {
-  std::string measure = "absolute";
-};
-
 /// Refuses a file that is given twice: it would count as two specimens.
 void require_different(const steps::CompareRequest& arguments) {
   std::set<std::filesystem::path> seen;
@@ -50,10 +46,8 @@ void print_tests(const steps::CutComparison& found) {
   fmt::print("all numbers: --json, or compare.json in the folder that -o names\n");
 }
 
-int run(const CompareArguments& arguments, const CommonOptions& options) {
-  steps::CompareRequest request = arguments;
+int run_compare(steps::CompareRequest request, const CommonOptions& options) {
   request.output = options.output;
-  request.settings.measure = value_named<ErrorMeasure>(arguments.measure);
   request.settings.bootstrap.seed = options.seed;
   require_valid(validate(request.settings));
   if (request.settings.is_paired && request.before.size() != request.after.size()) {
@@ -79,8 +73,8 @@ int run(const CompareArguments& arguments, const CommonOptions& options) {
 }  // namespace
 
 void add_compare(Application& application) {
-  auto [verb, a] = application.add_verb<CompareArguments>(
-      "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison", run);
+  auto [verb, a] = application.add_verb<steps::CompareRequest>(
+      "compare", "", "incise compare --before s1.json s2.json --after s3.json s4.json -o comparison", run_compare);
   describe_output(*verb, kNothingByDefault);
   verb->add_option("--before", a.before,
                    "Files of `incise evaluate -o` for the cuts before the change, one for each specimen")
@@ -88,10 +82,9 @@ void add_compare(Application& application) {
   verb->add_option("--after", a.after,
                    "Files of `incise evaluate -o` for the cuts after the change, one for each specimen")
       ->required();
-  verb->add_option("--measure", a.measure, "Error to compare")->check(name_of_any<ErrorMeasure>());
   verb->add_flag("--paired", a.settings.is_paired,
                  "The n-th file before and the n-th file after are of the same specimen");
-  add_options_of(*verb, a.settings, "alpha", "power", "replicates");
+  add_options_of(*verb, a.settings, "measure", "alpha", "power", "replicates");
 }
 
 }  // namespace incise::cli

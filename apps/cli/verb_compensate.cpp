@@ -8,9 +8,7 @@
 namespace incise::cli {
 namespace {
 
-struct CompensateOptions {
-  std::filesystem::path case_path;
-  CutOptions cut;
+struct CompensateOptions : CaseArguments {
   bool is_robust = false;
   bool is_unverified = false;
   steps::CalibratedRequest calibrated;
@@ -32,7 +30,7 @@ void require_robust_options(const CompensateOptions& chosen) {
 
 /// Computes a path from photographs of other cuts alone, without a simulated cut.
 int shift_without_simulation(const CompensateOptions& chosen, const CommonOptions& options) {
-  const steps::CaseRequest request = case_request(chosen.case_path, Stage::Compensate, options, chosen.cut);
+  const steps::CaseRequest request = case_request(chosen, Stage::Compensate, options);
   const CompensationMethod method = request.file.settings.compensation.method;
   if (chosen.is_robust || method != CompensationMethod::Profile) {
     throw CaseError("command line", "--no-verify",
@@ -54,8 +52,7 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
   return run_step(
       options,
       [&](const auto& context) {
-        return steps::compensate_case(case_request(chosen.case_path, Stage::Verify, options, chosen.cut), robust,
-                                      context);
+        return steps::compensate_case(case_request(chosen, Stage::Verify, options), robust, context);
       },
       print_study);
 }
@@ -74,8 +71,7 @@ void add_compensation_method(CLI::App& verb, CutOptions& options) {
 void add_compensate(Application& application) {
   auto [verb, a] =
       application.add_verb<CompensateOptions>("compensate", "", "incise compensate specimen -o out", compensate);
-  describe_output(*verb, kBesideCase);
-  verb->add_option("case", a.case_path, "Case file, or a folder with case.yaml")->required();
+  add_case(*verb, a.case_path);
   add_cut_options(*verb, a.cut);
   add_compensation_method(*verb, a.cut);
   verb->add_flag("--no-verify", a.is_unverified,

@@ -43,7 +43,7 @@ int demo(const CutOptions& cut, const CommonOptions& options) {
   require_own_run(root);
   const std::filesystem::path specimen = specimen_for(root / "specimen", options);
   try {
-    return run_whole_loop(specimen, root, options, cut);
+    return run_whole_loop({specimen, cut}, root, options);
   } catch (const StagesKept&) {
     throw;
   } catch (const Cancelled& error) {

@@ -7,8 +7,7 @@
 namespace incise::cli {
 namespace {
 
-int run(const steps::EvaluateRequest& arguments, const CommonOptions& options) {
-  steps::EvaluateRequest request = arguments;
+int run_evaluate(steps::EvaluateRequest request, const CommonOptions& options) {
   request.output = options.output;
   const std::vector<std::filesystem::path> inputs{request.photo, request.incision, request.tumor, request.line};
   refuse_input_as_output("-o", request.output, inputs);
@@ -22,7 +21,8 @@ int run(const steps::EvaluateRequest& arguments, const CommonOptions& options) {
 
 void add_evaluate(Application& application) {
   auto [verb, a] = application.add_verb<steps::EvaluateRequest>(
-      "evaluate", "", "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json", run);
+      "evaluate", "", "incise evaluate cut.jpg --mm-per-pixel 0.03 --red annotation --figure found.png --json",
+      run_evaluate);
   describe_output(*verb, kNothingByDefault);
   verb->add_option("photo", a.photo, "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
   add_options_of(*verb, a, "specimen_id", "incision", "tumor", "line", "contour", "red", "mm_per_pixel", "ruler",

@@ -49,7 +49,7 @@ int forecast_case(const ForecastOptions& chosen, const CommonOptions& options) {
   return run_step(
       options,
       [&](const auto& context) {
-        return steps::forecast_case(case_request(chosen.case_path, Stage::Plan, options, {}), chosen.calibration,
+        return steps::forecast_case(case_request({chosen.case_path}, Stage::Plan, options), chosen.calibration,
                                     context);
       },
       print_forecast);
@@ -63,11 +63,9 @@ void add_forecast(Application& application) {
       "Forecast the error of this ring from photographs of earlier cuts: the expected error by direction, with and "
       "without the simulation, its uncertainty, and in which respects the ring lies outside those photographed",
       "incise forecast specimen --calibration calibration/calibration.json -o out", forecast_case);
-  describe_output(*verb, kBesideCase);
-  verb->add_option(
-          "case", a.case_path,
-          "Case file, or a folder with case.yaml; its Young's modulus must be the one derived from the measured pull")
-      ->required();
+  add_case(*verb, a.case_path)
+      ->description(
+          "Case file, or a folder with case.yaml; its Young's modulus must be the one derived from the measured pull");
   verb->add_option("--calibration", a.calibration, "calibration.json of `incise calibrate --method fit`")->required();
 }
 

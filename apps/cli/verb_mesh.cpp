@@ -10,8 +10,7 @@
 namespace incise::cli {
 namespace {
 
-int run(const steps::MeshRequest& arguments, const CommonOptions& options) {
-  steps::MeshRequest request = arguments;
+int run_mesh(steps::MeshRequest request, const CommonOptions& options) {
   request.output = options.required_output("tongue.vtu");
   refuse_input_as_output("-o", request.output, {request.input, request.around});
   if (request.tets > 0 && request.tets < kFewestTets) {
@@ -32,7 +31,7 @@ int run(const steps::MeshRequest& arguments, const CommonOptions& options) {
 
 void add_mesh(Application& application) {
   auto [verb, a] = application.add_verb<steps::MeshRequest>(
-      "mesh", "", "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu", run);
+      "mesh", "", "incise mesh labels.nrrd --around path.csv --fine-mm 0.8 --coarse-mm 4 -o tongue.vtu", run_mesh);
   verb->add_option("input", a.input,
                    "Labels (.nrrd/.nhdr, .nii[.gz], .mhd/.mha) or closed surface (.stl, .ply, .obj, .vtp)")
       ->required();

@@ -6,8 +6,7 @@
 namespace incise::cli {
 namespace {
 
-int run_power(const laboratory::PowerStepRequest& arguments, const CommonOptions& options) {
-  laboratory::PowerStepRequest request = arguments;
+int run_power(laboratory::PowerStepRequest request, const CommonOptions& options) {
   require_valid(validate(request.series));
   Console console(options.level());
   std::optional<OlderOutput> older;

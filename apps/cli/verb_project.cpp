@@ -32,7 +32,7 @@ ProjectSettings settings_of(const ProjectArguments& arguments) {
   return settings;
 }
 
-int run(const ProjectArguments& arguments, const CommonOptions& options) {
+int run_project(const ProjectArguments& arguments, const CommonOptions& options) {
   steps::ProjectRequest request = arguments;
   request.output = options.required_output("projected");
   refuse_input_as_output("-o", request.output, {request.path, request.transform, request.surface, request.camera});
@@ -59,7 +59,7 @@ void add_project(Application& application) {
       "project", "",
       "incise project scene/path.json --transform registration/registration.json --surface tissue.ply --camera "
       "scene/camera.json -o projected",
-      run);
+      run_project);
   verb->add_option("path", a.path, "path.json, frame sim_stretched")->required();
   verb->add_option("--transform", a.transform,
                    "What `incise register` wrote: T_target_source, from the simulation to the surface's frame")

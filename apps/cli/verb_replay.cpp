@@ -6,8 +6,7 @@
 namespace incise::cli {
 namespace {
 
-int run_replay(const steps::ReplayRequest& arguments, const CommonOptions& options) {
-  steps::ReplayRequest request = arguments;
+int run_replay(steps::ReplayRequest request, const CommonOptions& options) {
   request.output = options.output;
   refuse_input_as_output("-o", request.output, {request.program, request.path});
   return run_step(options, [&](const auto& context) { return steps::replay_program(request, context); });

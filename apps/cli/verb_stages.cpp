@@ -1,23 +1,19 @@
 #include "study_run.hpp"
 
-#include <memory>
-
 namespace incise::cli {
 namespace {
 
 /// Adds a verb that runs the loop up to a stage; one that cuts has the options of a cut.
 void add_stage(Application& application, const char* name, const char* what, const char* example, Stage stage) {
-  auto case_path = std::make_shared<std::filesystem::path>();
-  auto cut = std::make_shared<CutOptions>();
-  CLI::App* verb = application.add_verb(name, what, example, [=](const CommonOptions& options) {
-    return run_step(
-        options,
-        [&](const auto& context) { return steps::run_stages(case_request(*case_path, stage, options, *cut), context); },
-        stage == Stage::Simulate ? print_cut : nullptr);
-  });
-  describe_output(*verb, kBesideCase);
-  verb->add_option("case", *case_path, "Case file, or a folder with case.yaml")->required();
-  if (stage == Stage::Simulate) add_cut_options(*verb, *cut);
+  auto [verb, a] = application.add_verb<CaseArguments>(
+      name, what, example, [stage](const CaseArguments& arguments, const CommonOptions& options) {
+        return run_step(
+            options,
+            [&](const auto& context) { return steps::run_stages(case_request(arguments, stage, options), context); },
+            stage == Stage::Simulate ? print_cut : nullptr);
+      });
+  add_case(*verb, a.case_path);
+  if (stage == Stage::Simulate) add_cut_options(*verb, a.cut);
 }
 
 }  // namespace

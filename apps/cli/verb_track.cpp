@@ -23,7 +23,7 @@ struct TrackArguments : steps::TrackRequest {
   std::vector<const CLI::Option*> of_mark;  ///< options without a meaning if there is no mark
 };
 
-int run(const TrackArguments& arguments, const CommonOptions& options) {
+int run_track(const TrackArguments& arguments, const CommonOptions& options) {
   steps::TrackRequest request = arguments;
   request.output = options.required_output("tracked");
   refuse_input_as_output("-o", request.output, {request.color, request.depth, request.intrinsics, request.camera});
@@ -53,7 +53,7 @@ void add_track(Application& application) {
       "track", "",
       "incise track color.png depth.png --intrinsics d405.json --mark green --camera "
       "robot_camera.json --plan -o tracked",
-      run);
+      run_track);
   verb->add_option("rgb", a.color, "Colour picture (.png, .jpg, .tif), or an organised coloured cloud (.ply)")
       ->required();
   verb->add_option("depth", a.depth, "Depth picture, 16 bits (.png, .tif); none with a cloud");
