@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <span>
 #include <vector>
 
@@ -52,10 +51,9 @@ class OneField : public Visitor {
     if (!is_in_list_ && !is_it(field, "INT", range)) return;
     if (sets()) {
       const std::string& text = texts_->at(is_in_list_ ? item_++ : 0);
-      const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-      const bool is_octal = text.size() > 1 && text.front() == '0';  // as C would read it
-      const bool is_whole = error == std::errc{} && at == text.data() + text.size() && !is_octal;
-      if (!is_whole || !contains(range, static_cast<double>(value))) refuse_text(text, whole_number(range));
+      const auto whole = whole_number_in<std::int64_t>(text);
+      if (!whole || !contains(range, static_cast<double>(*whole))) refuse_text(text, whole_number(range));
+      value = *whole;
     }
     shown += fmt::format("{}{}", shown.empty() ? "" : " ", value);
   }
@@ -84,7 +82,7 @@ class OneField : public Visitor {
     if (!is_in_list_) count = block.count;
     const std::span<double> values(static_cast<double*>(block.data), block.count);
     for (std::size_t i = 0; sets() && i < values.size(); ++i) values[i] = number_from(texts_->at(i), block.range);
-    shown = fmt::format("{}", fmt::join(values, " "));
+    if (!is_absent) shown = fmt::format("{}", fmt::join(values, " "));
   }
 
   bool is_found = false;
@@ -114,7 +112,7 @@ class OneField : public Visitor {
     return fmt::format("a whole number from {} to {}, in digits", range.least, range.most);
   }
   [[noreturn]] void refuse_text(const std::string& text, const std::string& wanted) const {
-    throw CaseError("command line", option_name(name_), number_in(text) ? text : "'" + text + "'", wanted);
+    refuse_value(option_name(name_), text, wanted);
   }
 
   std::string name_;

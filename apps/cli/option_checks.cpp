@@ -22,6 +22,10 @@ std::optional<double> number_in(const std::string& text) {
   return value;
 }
 
+void refuse_value(const std::string& option, const std::string& text, const std::string& expected) {
+  throw CaseError("command line", option, number_in(text) ? text : "'" + text + "'", expected);
+}
+
 namespace {
 
 template <typename IsAllowed>
@@ -29,8 +33,7 @@ CLI::Validator check_of(const std::string& option, const std::string& expected, 
   return CLI::Validator(
       [option, expected, is_allowed](std::string& text) {
         const std::optional<double> value = number_in(text);
-        if (!value || !is_allowed(*value))
-          throw CaseError("command line", option, value ? text : "'" + text + "'", expected);
+        if (!value || !is_allowed(*value)) refuse_value(option, text, expected);
         return std::string();
       },
       "");
@@ -51,20 +54,12 @@ CLI::Validator zero_or_more(const std::string& option) {
   return check_of(option, "a number of at least 0", [](double value) { return value >= 0.0; });
 }
 
-CLI::Validator finite(const std::string& option) {
-  return check_of(option, "a finite number", [](double) { return true; });
-}
-
 CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::uint64_t high) {
   return CLI::Validator(
       [option, low, high](std::string& text) {
-        std::uint64_t value = 0;
-        const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool is_octal = text.size() > 1 && text.front() == '0';  // as the parser would read it
-        const bool is_whole = error == std::errc{} && at == text.data() + text.size() && !is_octal;
-        if (!is_whole || value < low || value > high)
-          throw CaseError("command line", option, number_in(text) ? text : "'" + text + "'",
-                          fmt::format("a whole number from {} to {}, in digits", low, high));
+        const auto value = whole_number_in<std::uint64_t>(text);
+        if (!value || *value < low || *value > high)
+          refuse_value(option, text, fmt::format("a whole number from {} to {}, in digits", low, high));
         return std::string();
       },
       "");

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -16,6 +17,19 @@ namespace incise::cli {
 /// Returns the finite number that is the whole text; a leading + is allowed.
 [[nodiscard]] std::optional<double> number_in(const std::string& text);
 
+/// Returns the whole number that is the whole text, in digits: not 2.5, 1e3, or 010, which the parser reads as octal.
+template <typename Whole>
+[[nodiscard]] std::optional<Whole> whole_number_in(const std::string& text) {
+  Whole value = 0;
+  const auto [at, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_octal = text.size() > 1 && text.front() == '0';
+  if (error != std::errc{} || at != text.data() + text.size() || is_octal) return std::nullopt;
+  return value;
+}
+
+/// Refuses the value of an option; a text that is no number is quoted. @throws CaseError
+[[noreturn]] void refuse_value(const std::string& option, const std::string& text, const std::string& expected);
+
 /// Checks an option's number and throws a CaseError in the form of all other errors: option, found, expected. The
 /// option's name is a parameter because a check does not receive it.
 [[nodiscard]] CLI::Validator above_zero(const std::string& option);
@@ -24,9 +38,7 @@ namespace incise::cli {
 
 /// 0 is allowed.
 [[nodiscard]] CLI::Validator zero_or_more(const std::string& option);
-/// Any finite number.
-[[nodiscard]] CLI::Validator finite(const std::string& option);
-/// Only digits: not 2.5, 1e3 or 010. From low to high, both allowed.
+/// A whole number, see whole_number_in. From low to high, both allowed.
 [[nodiscard]] CLI::Validator whole_between(const std::string& option, std::uint64_t low, std::uint64_t high);
 
 /// One of the names of an enum.
