@@ -86,15 +86,13 @@ class AssessTest(CommandTest):
         small_case.write_case(self.folder / "case", small_case.SOUND)
         small_case.write_tumor_surface(self.folder / "case" / "tumor.stl")
         doubts = lambda: [reason["id"] for reason in json.loads((self.out / "correction" / "path.json").read_text())["verdict"]["reasons"]]
-        done = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.incise("run", "case", "-o", self.out, *small_case.ACCEPTED, status=DONE)
         script = self.out / "program" / "program.script"
         self.assertTrue(script.exists())
         before = doubts()
         self.assertIn("not_corrected", before)
         self.registered(rmse_mm=1.8)
-        done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise(*self.arguments("--stretch-force-n", PULL_N), status=NOT_ACCEPTABLE)
         self.assertFalse(script.exists(), "it was written before the advice")
         self.assertIn("removed, because it was written before this advice", done.stderr)
         self.assertIn("eligibility", doubts())
@@ -173,8 +171,7 @@ class AssessTest(CommandTest):
                 one.update(fitted_mm=[-3.5 + w for w in wave], observed_mm=[-3.5 - 3.0 * w for w in wave])
 
         small_calibration.write(self.calibration, contrary)
-        done = self.incise(*self.arguments("--stretch-force-n", PULL_N))
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        done = self.incise(*self.arguments("--stretch-force-n", PULL_N), status=BAD_DATA)
         self.assertRegex(done.stderr, "calibration.json: fitted: found a simulated share of -[0-9.]+ .photographed "
                                       "differences per simulated difference.")
         small_calibration.write(self.calibration, farther_out)

@@ -65,8 +65,7 @@ class CtTest(CommandTest):
 
     def test_two_bodies_of_a_size_are_a_caution(self):
         self.write_blocks((1, 1, 1), [((2, 6, 6), (9, 17, 17)), ((13, 6, 6), (20, 17, 17))])
-        done = self.incise("segment", "ct.nrrd", "-o", "out.nrrd", "--json")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise("segment", "ct.nrrd", "-o", "out.nrrd", "--json", status=DONE)
         result = json.loads(done.stdout)
         self.assertEqual(result["components"], 2)
         self.assertIn("1152 mm³ round (5.5, 11.5, 11.5) mm, which is kept", done.stderr)
@@ -141,8 +140,7 @@ class CtTest(CommandTest):
         )
         self.assert_refused(self.incise("deform", "case", "-o", self.out), BAD_DATA, "ge_head_dicom", "18.5 deg")
         self.assert_nothing_written()
-        done = self.incise("segment", series, "--roi-box-mm", *(-30,) * 3, *(30,) * 3, "-o", self.folder / "out.nrrd")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise("segment", series, "--roi-box-mm", *(-30,) * 3, *(30,) * 3, "-o", self.folder / "out.nrrd", status=DONE)
         self.assertIn("resampling", done.stderr)
 
 
@@ -378,11 +376,12 @@ class CaseTest(CommandTest):
 
     SURFACE_MM = 11.7  # of the stretched block
 
-    def assert_path_refused(self, status, *says, stages=("stretched", "plan"), z=SURFACE_MM, **waypoint):
-        waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7, **waypoint}
-                     for p in small_case.ring(radius=10.0, z=z, corners=24)]
-        (self.case / "path.json").write_text(json.dumps({"frame": "sim_stretched", "kind": "incise", "closed": True, "waypoints": waypoints}))
+    def give_path(self, points, frame="sim_stretched", **more):
+        (self.case / "path.json").write_text(json.dumps(small_case.path(points, frame, **more)))
         self.change(path="path.json")
+
+    def assert_path_refused(self, status, *says, stages=("stretched", "plan"), z=SURFACE_MM, **waypoint):
+        self.give_path(small_case.ring(radius=10.0, z=z, corners=24), waypoint=waypoint)
         self.assert_case_refused("simulate", status, *says, stages=stages)
 
     def test_a_given_path_above_the_surface_is_refused(self):
@@ -402,31 +401,15 @@ class CaseTest(CommandTest):
         self.assert_path_refused(BAD_DATA, "path.json", "/waypoints/0/axis", "length 2", stages=(), axis=[0, 0, -2])
 
     def test_a_given_path_outside_the_tissue_is_refused(self):
-        path = {
-            "frame": "sim_stretched",
-            "kind": "incise",
-            "closed": True,
-            "waypoints": [
-                {"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7}
-                for p in small_case.ring(center=(300.0, 20.0), radius=10.0, corners=24)
-            ],
-        }
-        (self.case / "path.json").write_text(json.dumps(path))
-        self.change(path="path.json")
+        self.give_path(small_case.ring(center=(300.0, 20.0), radius=10.0, corners=24))
         self.assert_case_refused("simulate", BAD_CASE, "waypoint 0", stages=["stretched", "plan"])
 
     def test_a_given_path_in_the_wrong_frame_is_refused(self):
-        path = {"frame": "robot", "kind": "incise", "closed": True,
-                "waypoints": [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in small_case.ring()]}
-        (self.case / "path.json").write_text(json.dumps(path))
-        self.change(path="path.json")
+        self.give_path(small_case.ring(), "robot")
         self.assert_case_refused("simulate", BAD_DATA, "path.json", "frame", "robot", "sim_stretched")
 
     def test_an_open_path_for_a_ring_is_refused_before_anything_runs(self):
-        path = {"frame": "sim_stretched", "kind": "incise", "closed": False,
-                "waypoints": [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in small_case.ring()]}
-        (self.case / "path.json").write_text(json.dumps(path))
-        self.change(path="path.json")
+        self.give_path(small_case.ring(), closed=False)
         self.assert_case_refused("simulate", BAD_CASE, "an open path", "plan.kind: ring")
 
     def test_a_count_of_tets_that_is_no_mesh_is_refused(self):
@@ -444,8 +427,7 @@ class CaseTest(CommandTest):
         plan = self.folder / "work" / "plan"
         plan.mkdir(parents=True)
         (plan / "mine.csv").write_text("mine")
-        done = self.incise("plan", "case", "-o", self.folder / "work", "--quiet")
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        self.incise("plan", "case", "-o", self.folder / "work", "--quiet", status=BAD_DATA)
         self.assertEqual((plan / "mine.csv").read_text(), "mine")
 
     def test_an_export_with_the_users_own_files_is_never_replaced(self):
@@ -479,8 +461,7 @@ class CaseTest(CommandTest):
         data, whole = entry.read_bytes(), (self.out / "stretched" / "deformed.vtu").read_bytes()
         for damaged in (data[:-1], data[:500] + bytes([data[500] ^ 1]) + data[501:], b""):
             entry.write_bytes(damaged)
-            done = self.incise("deform", "case", "-o", self.out)
-            self.assertEqual(done.returncode, DONE, done.stderr)
+            done = self.incise("deform", "case", "-o", self.out, status=DONE)
             self.assertIn("stretched.bin: byte", done.stderr)
             self.assertIn("It is computed again", done.stderr)
             self.assertEqual((self.out / "stretched" / "deformed.vtu").read_bytes(), whole)
@@ -490,8 +471,7 @@ class CaseTest(CommandTest):
         small_case.write_msh(self.case / "block.msh", vertices, [(a, b, d, c) for a, b, c, d in tets])
         for verb in (("deform", "case"), ("interchange", "case", "--format", "febio")):
             with self.subTest(verb=verb[0]):
-                done = self.incise(*verb, "-o", self.folder / verb[0])
-                self.assertEqual(done.returncode, DONE, done.stderr)
+                done = self.incise(*verb, "-o", self.folder / verb[0], status=DONE)
                 self.assertIn("block.msh: every tet has a negative volume; all are turned over", done.stderr)
 
     def test_a_device_is_not_replaced_by_a_file(self):
@@ -515,19 +495,9 @@ class CaseTest(CommandTest):
 class ExportTest(HandMadePaths, CommandTest):
     """A ring of 20 mm across, 5 mm outside its tumour edge, under the robot."""
 
-    def write_path(self, frame="robot", **changes):
-        path = {
-            "schema": "incise.path/1",
-            "frame": frame,
-            "kind": "incise",
-            "closed": True,
-            "waypoints": [
-                {"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7}
-                for p in small_case.ring(center=(600.0, 0.0), radius=10.0, z=200.0, corners=48)
-            ],
-            "tumor_edge": small_case.ring(center=(600.0, 0.0), radius=5.0, z=200.0),
-        }
-        path.update(changes)
+    def write_path(self, frame="robot", x=600.0, edge_mm=5.0, **changes):
+        path = small_case.path(small_case.ring(center=(x, 0.0), radius=10.0, z=200.0, corners=48), frame, schema="incise.path/1",
+                               tumor_edge=small_case.ring(center=(x, 0.0), radius=edge_mm, z=200.0), **changes)
         (self.folder / "path.json").write_text(json.dumps(path))
 
     def export(self, *options):
@@ -563,13 +533,11 @@ class ExportTest(HandMadePaths, CommandTest):
         self.assert_unsafe(self.export("--depth-mm", "9"), "depth")
 
     def test_a_path_through_the_tumor_is_not_exported(self):
-        self.write_path(tumor_edge=small_case.ring(center=(600.0, 0.0), radius=9.0, z=200.0))
+        self.write_path(edge_mm=9.0)
         self.assert_unsafe(self.export(), "margin")
 
     def test_a_path_beyond_the_arm_is_not_exported(self):
-        far = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7}
-               for p in small_case.ring(center=(2600.0, 0.0), radius=10.0, z=200.0, corners=48)]
-        self.write_path(waypoints=far, tumor_edge=small_case.ring(center=(2600.0, 0.0), radius=5.0, z=200.0))
+        self.write_path(x=2600.0)
         self.assert_unsafe(self.export(), "reach")
 
     def test_an_unknown_key_of_a_path_is_named(self):
@@ -700,8 +668,7 @@ class EvaluateTest(CommandTest):
 
 class CommandLineTest(CommandTest):
     def assert_misuse(self, *arguments, says):
-        done = self.incise(*arguments)
-        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        done = self.incise(*arguments, status=BAD_CASE)
         self.assertEqual(done.stdout, "")
         self.assertIn(says, done.stderr)
         self.assertEqual(files_below(self.folder), [])

@@ -6,6 +6,7 @@ import math
 import struct
 import unittest
 
+import small_case
 from command import BAD_CASE, BAD_DATA, DONE, CommandTest, HandMadePaths, files_below
 
 
@@ -29,8 +30,7 @@ def path_round(edge_csv, T_robot_specimen, moved_mm=0.0):
         return (p[0] + 5 * (p[0] - middle[0]) / out, p[1] + 5 * (p[1] - middle[1]) / out, p[2] - 1.0)
 
     points = points[:: max(1, len(points) // 40)]
-    waypoints = [{"position_mm": in_robot(outside(p)), "axis": [0, 0, -1], "depth_mm": 5.0, "speed_mm_s": 7.0} for p in points]
-    return {"frame": "robot", "kind": "incise", "closed": True, "waypoints": waypoints, "tumor_edge": [in_robot(p) for p in points]}
+    return small_case.path([in_robot(outside(p)) for p in points], tumor_edge=[in_robot(p) for p in points])
 
 
 class SchemaTest(CommandTest):
@@ -74,8 +74,7 @@ class SecondLaboratoryTest(CommandTest):
             if key not in ("schema", "depth_mm", "speed_mm_s"):
                 self.assertNotIn(f'"{key}"', json.dumps(readings))
         # The truth is a specimen file: it makes the same readings.
-        again = self.incise("bench", "make", truth / "specimen.json", "-o", self.folder / "again")
-        self.assertEqual(again.returncode, DONE, again.stderr)
+        again = self.incise("bench", "make", truth / "specimen.json", "-o", self.folder / "again", status=DONE)
         self.assertEqual((self.folder / "again/scan.ply").read_bytes(), (self.out / "scan.ply").read_bytes())
 
     def test_what_does_not_go_together_is_refused(self):
@@ -188,15 +187,12 @@ class BadInputTest(CommandTest):
         self.assert_refused(self.incise("bench", "make", "nowhere.json", "-o", self.out), BAD_DATA, "nowhere.json")
 
     def test_the_floor_needs_a_specimen_and_a_place_for_its_file(self):
-        done = self.incise("bench", "floor", "none.json", "-o", "floor.json")
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        done = self.incise("bench", "floor", "none.json", "-o", "floor.json", status=BAD_DATA)
         self.assertIn("none.json", done.stderr)
         file = specimen_file(self.folder / "specimen.json")
-        done = self.incise("bench", "floor", file)
-        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        done = self.incise("bench", "floor", file, status=BAD_CASE)
         before = file.read_bytes()
-        done = self.incise("bench", "floor", file, "-o", file)
-        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        self.incise("bench", "floor", file, "-o", file, status=BAD_CASE)
         self.assertEqual(file.read_bytes(), before)
         self.assert_nothing_written(self.folder / "floor.json")
 

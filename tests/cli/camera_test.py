@@ -6,6 +6,7 @@ import json
 import math
 import unittest
 
+import small_case
 import small_photo
 from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, files_below
 from sealed_json import sealed
@@ -126,8 +127,7 @@ class PhotoTest(CommandTest):
 
     def test_gaps_as_large_as_the_picture_are_refused(self):
         photo = self.photo(TUMOR, self.ring(10.0))
-        done = self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--max-gap-mm", 1000)
-        self.assertEqual(done.returncode, BAD_CASE)
+        done = self.incise("evaluate", photo, "--mm-per-pixel", SCALE, "--max-gap-mm", 1000, status=BAD_CASE)
         self.assertIn("--max-gap-mm", done.stderr)
 
     def test_a_figure_over_a_photograph_is_a_png(self):
@@ -208,8 +208,7 @@ class TrackTest(CommandTest):
         self.assertIn(b"comment incise.specimen_id tongue-07\n", (self.out / "cloud.ply").read_bytes())
 
     def test_a_mark_with_a_gap_is_no_ring(self):
-        done = self.incise(*self.scene(opening_deg=25.0), "--camera", "mount.json", "--plan", "--json")
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise(*self.scene(opening_deg=25.0), "--camera", "mount.json", "--plan", "--json", status=NOT_ACCEPTABLE)
         self.assertIn("the mark is not closed: it has a gap of", done.stderr)
         result = json.loads(done.stdout)
         self.assertFalse(result["closed_loop"])
@@ -219,8 +218,7 @@ class TrackTest(CommandTest):
         self.assertFalse((self.out / "path.json").exists())
 
     def test_a_mark_that_leaves_the_picture_is_not_called_open(self):
-        done = self.incise(*self.scene(center=(20.0, 120.0)), "--camera", "mount.json", "--plan", "--json")
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise(*self.scene(center=(20.0, 120.0)), "--camera", "mount.json", "--plan", "--json", status=NOT_ACCEPTABLE)
         self.assertIn("the mark leaves the picture at pixel", done.stderr)
         self.assertNotIn("not closed", done.stderr)
         self.assertTrue(json.loads(done.stdout)["leaves_picture"])
@@ -350,10 +348,7 @@ class ProjectTest(CommandTest):
         def circle(radius, count):
             return [[radius * math.cos(2 * math.pi * i / count), radius * math.sin(2 * math.pi * i / count), 0.0] for i in range(count)]
 
-        waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in circle(15.0, 48)]
-        (self.folder / "path.json").write_text(
-            json.dumps({"frame": frame, "kind": "incise", "closed": True, "waypoints": waypoints, "tumor_edge": circle(10.0, 60)})
-        )
+        (self.folder / "path.json").write_text(json.dumps(small_case.path(circle(15.0, 48), frame, tumor_edge=circle(10.0, 60))))
 
     def write_cloud(self, half_mm=25, hole_mm=0.0):
         """A slope through the sim's origin, 0.5 mm above it, in the robot's frame."""
@@ -392,8 +387,7 @@ class ProjectTest(CommandTest):
         self.write_transform(reasons=["the source's mirror image fits about as well"], handedness_determined=False)
         self.assertEqual(self.held_against(), ["registration"])
         self.assertEqual(self.held_against("--kind", "mark"), ["registration"])
-        done = self.incise("export", "robot.json", "--kind", "mark", "-o", "mark.script")
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE)
+        done = self.incise("export", "robot.json", "--kind", "mark", "-o", "mark.script", status=NOT_ACCEPTABLE)
         self.assertIn("no program: caution: registration", done.stderr)
 
     def test_a_transform_that_register_did_not_find_is_a_typed_one(self):
@@ -432,15 +426,13 @@ class ProjectTest(CommandTest):
         path = json.loads((self.folder / "path.json").read_text())
         self.assertLess(self.json_of(*self.ARGUMENTS)["max_step_mm"], 2.2)
         (self.folder / "path.json").write_text(json.dumps({**path, "waypoints": path["waypoints"][:38]}))
-        done = self.incise(*self.ARGUMENTS, "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.incise(*self.ARGUMENTS, "--json", status=DONE)
         self.assertIn("the ring has a gap: 19.84 mm", done.stderr)
         self.assertIn("from waypoint 37 to the next", done.stderr)
         self.assertGreater(json.loads(done.stdout)["max_step_mm"], 18.0)
         upwards = [{**w, "axis": [0, 0, 1]} for w in path["waypoints"]]
         (self.folder / "path.json").write_text(json.dumps({**path, "waypoints": upwards}))
-        done = self.incise(*self.ARGUMENTS, "--json")
-        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.incise(*self.ARGUMENTS, "--json", status=DONE)
         self.assertIn("the tool leans 180 degrees from straight down at waypoint 0", done.stderr)
         self.assertAlmostEqual(json.loads(done.stdout)["max_tilt_deg"], 180.0)
 
@@ -516,8 +508,7 @@ class ProjectTest(CommandTest):
     def test_an_uncertain_scale_far_from_its_center_is_told(self):
         self.write_transform(scale=1.02, certificate={"scale_sd": 0.003})
         (self.folder / "camera.json").write_text(json.dumps({"T_robot_camera": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 400], [0, 0, 0, 1]]}))
-        done = self.incise(*self.ARGUMENTS, "--camera", "camera.json")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise(*self.ARGUMENTS, "--camera", "camera.json", status=DONE)
         self.assertIn("is uncertain by 0.0030", done.stderr)
         self.take_away()
         self.write_transform(scale=1.02, certificate={"scale_sd": 0.03})
@@ -555,8 +546,7 @@ class ProjectTest(CommandTest):
         (self.folder / "registration.json").write_text(json.dumps({"T_target_source": kept["T_target_source"]}))
         self.refused("registration.json", "/converged: found nothing, expected a registration that converged")
         self.write_transform(scale=1.08)
-        done = self.incise(*self.ARGUMENTS)
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise(*self.ARGUMENTS, status=DONE)
         self.assertIn("the scale is 1.0800", done.stderr)
         self.take_away()
         (self.folder / "registration.json").write_text(json.dumps({"T_target_source": [[1, 0], [0, 1]]}))

@@ -71,8 +71,7 @@ class CheckpointTest(CommandTest):
         self.assertEqual({name.split("/")[0] for name in files_below(self.out)},
                          {"study.json", "stretched", "plan", "cache"})
 
-        resumed = self.incise("simulate", "case", "-o", self.out, "--resume", "--threads", "2")
-        self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
+        resumed = self.incise("simulate", "case", "-o", self.out, "--resume", "--threads", "2", status=NOT_ACCEPTABLE)
         self.assertRegex(resumed.stderr, r"simulate: continues after step \d+")
         self.assertFalse(self.checkpoint.exists(), "a cut that is finished needs none")
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
@@ -101,8 +100,7 @@ class CheckpointTest(CommandTest):
     def test_run_goes_on_in_its_second_cut(self):
         done = self.stop("run", self.cache / "pass_1.checkpoint.bin", signal.SIGTERM)
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
-        resumed = self.incise("run", "case", "-o", self.out)
-        self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
+        resumed = self.incise("run", "case", "-o", self.out, status=NOT_ACCEPTABLE)
         self.assertIn("pass 1: continues after step", resumed.stderr)
         for product in ("as_planned", "corrected"):
             self.assert_same_cut(self.out / product, self.straight / product)
@@ -115,8 +113,7 @@ class CheckpointTest(CommandTest):
         self.assertEqual(done.returncode, INTERRUPTED, done.stderr)
         self.assertTrue((self.cache / "pass_1.bin").is_file())
         self.assertFalse((self.out / "correction").exists())
-        resumed = self.incise("run", "case", "-o", self.out, "--resume")
-        self.assertEqual(resumed.returncode, NOT_ACCEPTABLE, resumed.stderr)
+        resumed = self.incise("run", "case", "-o", self.out, "--resume", status=NOT_ACCEPTABLE)
         self.assertIn("pass 2: continues after step", resumed.stderr)
         self.assertNotIn("pass 1: continues", resumed.stderr)
         self.assert_same_cut(self.out / "corrected", self.straight / "corrected")
@@ -143,8 +140,7 @@ class CheckpointTest(CommandTest):
         done = self.incise("simulate", "case", "-o", self.out, "--resume")
         self.assert_refused(done, BAD_CASE, "--resume", "no checkpoint of the cut as_planned that fits")
         self.assertEqual(self.checkpoint.read_bytes(), left)
-        done = self.incise("simulate", "case", "-o", self.out)
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise("simulate", "case", "-o", self.out, status=NOT_ACCEPTABLE)
         self.assertIn("the cut starts from the beginning", done.stderr)
 
     def test_a_damaged_checkpoint_is_refused_by_resume_and_passed_over_without_it(self):
@@ -161,8 +157,7 @@ class CheckpointTest(CommandTest):
                     self.assert_refused(done, BAD_CASE, "no checkpoint of the cut as_planned that fits")
                 self.assertEqual(self.checkpoint.read_bytes(), damaged)
         self.checkpoint.write_bytes(whole[: len(whole) // 2])
-        done = self.incise("simulate", "case", "-o", self.out)
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise("simulate", "case", "-o", self.out, status=NOT_ACCEPTABLE)
         self.assertIn("as_planned.checkpoint.bin: byte", done.stderr)
         self.assertIn("the cut starts from the beginning", done.stderr)
         self.assert_same_cut(self.out / "as_planned", self.straight / "as_planned")
@@ -187,8 +182,7 @@ class FramesTest(CommandTest):
     def test_counts_that_are_none_are_refused(self):
         for count in ("0", "-1", "501", "2.5", "many", ""):
             with self.subTest(count=count):
-                done = self.incise("simulate", "case", "-o", self.out, "--frames", count)
-                self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+                done = self.incise("simulate", "case", "-o", self.out, "--frames", count, status=BAD_CASE)
                 self.assertIn("--frames", done.stderr)
                 self.assert_nothing_written()
 

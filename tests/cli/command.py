@@ -126,8 +126,12 @@ class CommandTest(unittest.TestCase):
             if before.exists():
                 shutil.copytree(before, self.out, symlinks=True)
 
-    def incise(self, *arguments, cpu_s=MOST_CPU_S):
-        return self.finished(self.start(*arguments, cpu_s=cpu_s))
+    def incise(self, *arguments, status=None, cpu_s=MOST_CPU_S):
+        """The command, once it has ended. @param status: the exit status that it has to end with, if only one is right."""
+        done = self.finished(self.start(*arguments, cpu_s=cpu_s))
+        if status is not None:
+            self.assertEqual(done.returncode, status, done.stderr)
+        return done
 
     def interrupted(self, *arguments, after):
         """The command, asked to stop (as by Ctrl-C) once `after` stands on standard error."""
@@ -144,9 +148,7 @@ class CommandTest(unittest.TestCase):
 
     def json_of(self, *arguments, status=DONE):
         """The one JSON object that a command prints with --json."""
-        done = self.incise(*arguments, "--json")
-        self.assertEqual(done.returncode, status, done.stderr)
-        result = json.loads(done.stdout)
+        result = json.loads(self.incise(*arguments, "--json", status=status).stdout)
         self.assertIsInstance(result, dict)
         return result
 

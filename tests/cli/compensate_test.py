@@ -167,15 +167,13 @@ class CompensateTest(CommandTest):
         ):
             with self.subTest(options=options, choice=choice):
                 small_case.write_case(self.folder / "case", {"compensation": choice})
-                done = self.incise("compensate", "case", "-o", self.out, *options)
-                self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+                done = self.incise("compensate", "case", "-o", self.out, *options, status=BAD_CASE)
                 for words in says:
                     self.assertIn(words, done.stderr)
                 self.assert_nothing_written()
 
     def test_a_case_that_cannot_be_is_refused(self):
-        done = self.incise("compensate", "case", "-o", self.out, "--method", "best")
-        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        done = self.incise("compensate", "case", "-o", self.out, "--method", "best", status=BAD_CASE)
         self.assertIn("--method", done.stderr)
         self.assert_nothing_written()
         for field, value, says in (("method", "fast", "'fast'"), ("observable", "kerf", "'kerf'"), ("bias_mm", 40, "[-10, 10]")):

@@ -15,8 +15,7 @@ class HelpTest(CommandTest):
         return re.search(r"expected one of (.*)\. Did", self.incise("rnu").stderr)[1].split(", ")
 
     def test_every_verb_is_listed_in_a_group_in_one_line_that_fits_100_columns(self):
-        done = self.incise("--help")
-        self.assertEqual(done.returncode, DONE)
+        done = self.incise("--help", status=DONE)
         lines = done.stdout[done.stdout.index("Start here:") : done.stdout.index("`incise help")].splitlines()
         self.assertEqual([line for line in lines if line.endswith(":")], GROUPS)
         listed = [line for line in lines if line.startswith("  ")]
@@ -33,8 +32,7 @@ class HelpTest(CommandTest):
     def test_the_help_of_every_verb_ends_with_an_example_of_it(self):
         for verb in self.verbs():
             with self.subTest(verb=verb):
-                done = self.incise(verb, "--help")
-                self.assertEqual(done.returncode, DONE)
+                done = self.incise(verb, "--help", status=DONE)
                 *_, heading, example = [line for line in done.stdout.splitlines() if line.strip()]
                 self.assertEqual(heading, "Example:")
                 self.assertTrue(example.startswith(f"  incise {verb} "), example)
@@ -42,8 +40,7 @@ class HelpTest(CommandTest):
     def test_help_is_a_word_too(self):
         self.assertEqual(self.incise("help").stdout, self.incise("--help").stdout)
         for words in (["run"], ["bench", "make"]):
-            done = self.incise("help", *words)
-            self.assertEqual(done.returncode, DONE)
+            done = self.incise("help", *words, status=DONE)
             self.assertEqual(done.stdout, self.incise(*words, "--help").stdout)
             self.assertIn("Example:", done.stdout)
         self.assert_refused(self.incise("help", "rnu"), BAD_CASE, "'rnu'", "Did you mean 'run'?")
@@ -56,8 +53,7 @@ class HelpTest(CommandTest):
             self.assertIn("File or folder to write" + says, said)
 
     def test_the_version_is_one_line(self):
-        done = self.incise("--version")
-        self.assertEqual(done.returncode, DONE)
+        done = self.incise("--version", status=DONE)
         self.assertRegex(done.stdout, r"^incise \d+\.\d+\.\d+ \(\S+\)\n$")
 
     def test_the_schema_is_json_and_the_defaults_name_it(self):

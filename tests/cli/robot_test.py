@@ -8,6 +8,7 @@ import pathlib
 import struct
 import unittest
 
+import small_case
 from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, HandMadePaths
 from sealed_json import sealed
 
@@ -20,8 +21,7 @@ def ring(center=(600.0, 0.0, 100.0), radius=15.0, edge=10.0, depth=5.0, speed=7.
     def circle(r):
         return [[center[0] + r * math.cos(a), center[1] + r * math.sin(a), center[2]] for a in angles]
 
-    waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": depth, "speed_mm_s": speed} for p in circle(radius)]
-    return {"frame": "robot", "kind": kind, "closed": True, "waypoints": waypoints, "tumor_edge": circle(edge)}
+    return small_case.path(circle(radius), waypoint={"depth_mm": depth, "speed_mm_s": speed}, kind=kind, tumor_edge=circle(edge))
 
 
 class RobotTest(HandMadePaths, CommandTest):
@@ -31,8 +31,7 @@ class RobotTest(HandMadePaths, CommandTest):
 
     def assert_unsafe(self, path, check, *says, options=()):
         """Exit status 4, a message that names check, waypoint and value, and no file."""
-        done = self.incise("export", self.write(path), "-o", "cut.script", "--json", *options)
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise("export", self.write(path), "-o", "cut.script", "--json", *options, status=NOT_ACCEPTABLE)
         result = json.loads(done.stdout)
         failed = [c["name"] for c in result["checks"] if not c["passed"]]
         self.assertIn(check, failed)
@@ -112,8 +111,7 @@ class ExportTest(RobotTest):
     def test_an_override_is_typed_for_each_check_and_stands_in_the_program(self):
         path = ring(depth=6.0, speed=31.0)
         self.assert_unsafe(path, "speed_max", options=["--override", "depth"])
-        done = self.incise("export", self.write(path), "--override", "depth", "--override", "speed_max", "-o", "cut.script")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.incise("export", self.write(path), "--override", "depth", "--override", "speed_max", "-o", "cut.script", status=DONE)
         text = (self.folder / "cut.script").read_text()
         self.assertIn("# incise.override: depth: 1 mm at waypoint", text)
         self.assertIn("# incise.override: speed_max: ", text)
@@ -137,8 +135,7 @@ class ExportTest(RobotTest):
         (self.folder / "cut.script").unlink()
         for name, form in (("cut.script", "urscript"), ("cut.csv", "joint-csv"), ("cut.json", "json"), ("cut.yaml", "ros-trajectory"), ("cut.bag", "ros-trajectory")):
             for _ in range(2):  # its own are replaced
-                done = self.incise(*arguments[:-1], name, "--format", form)
-                self.assertEqual(done.returncode, DONE, done.stderr)
+                self.incise(*arguments[:-1], name, "--format", form, status=DONE)
 
     def test_lengths_that_no_instrument_or_table_has_are_refused(self):
         for option in ("--table-z-mm", "--shaft-diameter-mm", "--needle-length-mm"):
@@ -207,8 +204,7 @@ class ExportTest(RobotTest):
         through = {**ring(radius=2.0), "closed": False, "tumor_edge_closed": False}
         self.assert_unsafe(through, "margin", options=["--open"])
         line = {**ring(), "closed": False, "tumor_edge": []}
-        done = self.incise("export", self.write(line), "--open", "-o", "cut.script", "--json")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise("export", self.write(line), "--open", "-o", "cut.script", "--json", status=DONE)
         self.assertIn("not checked with --open: closed, gap, encloses", done.stderr)
         self.assertIn("closed, gap, encloses: the path need not be a ring", json.loads(done.stdout)["checks_not_made"])
 
@@ -244,8 +240,7 @@ class ExportTest(RobotTest):
         for option in ("--surface", "--registration", "--power-w"):
             self.assertEqual(bare.count(f"not checked without {option}: "), 1, bare)
         self.assertNotIn("looser", bare)
-        done = self.incise("export", path, "--close-margin-mm", 1, "--shaft-diameter-mm", 4, "--table-z-mm", -50, "--power-w", 30, "-o", "cut.script")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise("export", path, "--close-margin-mm", 1, "--shaft-diameter-mm", 4, "--table-z-mm", -50, "--power-w", 30, "-o", "cut.script", status=DONE)
         self.assertNotIn("--power-w", done.stderr)
         for words in ("--close-margin-mm is 1 mm, by default 2.2 mm", "--shaft-diameter-mm is 4 mm", "--table-z-mm is -50 mm"):
             self.assertIn("a looser check: " + words, done.stderr)
@@ -293,8 +288,7 @@ class ExportTest(RobotTest):
         options = ["--power-w", "35"]
         self.assert_unsafe(slow, "heat", "5 mm at waypoint", "must be >= 32.", options=options)
         self.json_of("export", self.write(ring(speed=7.0)), *options, "-o", "fast.script")
-        done = self.incise("export", self.write(slow), *options, "--override", "heat", "-o", "slow.script")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise("export", self.write(slow), *options, "--override", "heat", "-o", "slow.script", status=DONE)
         self.assertIn("overridden: heat", done.stderr)
 
     def test_waypoints_that_no_tool_can_follow_are_refused(self):
@@ -316,8 +310,7 @@ class ExportTest(RobotTest):
         self.assertEqual(self.incise("export", self.write(ring()), "-o", "cut.script").returncode, DONE)
         older = (self.folder / "cut.script").read_bytes()
         says = "cut.script is from an earlier run and was not changed"
-        unsafe = self.incise("export", self.write(ring(radius=11.0)), "-o", "cut.script", "--json")
-        self.assertEqual(unsafe.returncode, NOT_ACCEPTABLE)
+        unsafe = self.incise("export", self.write(ring(radius=11.0)), "-o", "cut.script", "--json", status=NOT_ACCEPTABLE)
         self.assertEqual(json.loads(unsafe.stdout)["stale_output"], "cut.script")
         bad = self.incise("export", "nowhere.json", "-o", "cut.script")
         self.assert_refused(bad, BAD_DATA, "nowhere.json")
@@ -326,8 +319,7 @@ class ExportTest(RobotTest):
         for done in (unsafe, bad, wrong):
             self.assertEqual(done.stderr.count(says), 1, done.stderr)
         self.assertEqual((self.folder / "cut.script").read_bytes(), older)
-        again = self.incise("export", self.write(ring(speed=6.0)), "-o", "cut.script")
-        self.assertEqual(again.returncode, DONE, again.stderr)
+        again = self.incise("export", self.write(ring(speed=6.0)), "-o", "cut.script", status=DONE)
         self.assertNotIn("earlier run", again.stderr)
         (self.folder / "cut.script").unlink()
         fresh = self.json_of("export", self.write(ring(radius=11.0)), "-o", "cut.script", status=NOT_ACCEPTABLE)
@@ -369,8 +361,7 @@ class ReplayTest(RobotTest):
                 self.assertEqual(played["outcome"], outcome, played.get("reason"))
                 self.assertIs(played["program_audit"]["checked"], False)
         (self.folder / "foreign.script").write_text("".join(line for line in lines if "incise.digest" not in line))
-        done = self.incise("replay", "foreign.script", "--json")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        done = self.incise("replay", "foreign.script", "--json", status=DONE)
         self.assertIn("has no digest", done.stderr)
         self.assertEqual((json.loads(done.stdout)["program_audit"]["checked"], json.loads(done.stdout)["program_audit"]["digest_matches"]), (False, None))
 
@@ -409,8 +400,7 @@ class ReplayTest(RobotTest):
     def test_joints_beyond_their_limits_end_the_replay(self):
         start = next(line for line in self.text.splitlines() if line.startswith("  movej(["))
         (self.folder / "far.script").write_text(self.text.replace(start, "  movej([7.0," + start.split(",", 1)[1], 1))
-        done = self.incise("replay", "far.script", "-o", "replay", "--json")
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise("replay", "far.script", "-o", "replay", "--json", status=NOT_ACCEPTABLE)
         result = json.loads(done.stdout)
         self.assertEqual((result["outcome"], result["line"]), ("joint_limits", self.text[: self.text.index(start)].count("\n") + 1))
         self.assertIn("shoulder_pan_joint at 401.1 degrees", done.stderr)
@@ -425,8 +415,7 @@ class ReplayTest(RobotTest):
         for name, text, outcome in (("short.csv", lines[:middle], "ends_in_tissue"), ("late.csv", lines[:head] + lines[middle:], "starts_in_tissue")):
             with self.subTest(program=name):
                 (self.folder / name).write_text("".join(text))
-                done = self.incise("replay", name, "--json")
-                self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+                done = self.incise("replay", name, "--json", status=NOT_ACCEPTABLE)
                 self.assertEqual(json.loads(done.stdout)["outcome"], outcome)
                 self.assertIn("5.00 mm below the surface", done.stderr)
         exit_at = self.text.index("  # phase: exit")
@@ -435,9 +424,7 @@ class ReplayTest(RobotTest):
 
     def test_a_tip_off_its_path_and_joints_too_fast_are_not_acceptable(self):
         other = ring(center=(650.0, 0.0, 100.0))
-        done = self.incise("replay", "cut.script", "--path", self.write(other, "other.json"), "--json")
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
-        result = json.loads(done.stdout)
+        result = self.json_of("replay", "cut.script", "--path", self.write(other, "other.json"), status=NOT_ACCEPTABLE)
         self.assertEqual((result["outcome"], result["allowed_deviation_mm"]), ("off_course", 1))
         self.assertGreater(result["max_cut_deviation_mm"], 20)
         self.json_of("replay", "cut.script", "--path", "other.json", "--max-deviation-mm", 100)
@@ -456,8 +443,7 @@ class ReplayTest(RobotTest):
     def test_programs_of_days_are_refused_at_once(self):
         retreat = next(line for line in reversed(self.text.splitlines()) if line.startswith("  movel("))
         (self.folder / "slow.script").write_text(self.text.replace(retreat, retreat.split(", v=")[0] + ", v=0.000000001)"))
-        done = self.incise("replay", "slow.script", "--json", cpu_s=60)
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.incise("replay", "slow.script", "--json", cpu_s=60, status=NOT_ACCEPTABLE)
         self.assertEqual(json.loads(done.stdout)["outcome"], "too_long")
         self.assert_line_refused("end\n\n", "  sleep(1e9)\nend\n\n", "at most 7200 s")
 
@@ -474,9 +460,7 @@ class ReplayTest(RobotTest):
     def test_a_program_that_leaves_the_arms_reach_ends_with_its_line(self):
         first = next(line for line in self.text.splitlines() if line.startswith("  movep("))
         (self.folder / "far.script").write_text(self.text.replace(first, first.replace("p[0.", "p[3.", 1), 1))
-        done = self.incise("replay", "far.script", "--json")
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
-        self.assertIn(json.loads(done.stdout)["outcome"], ("unreachable", "blends_overlap"))
+        self.assertIn(self.json_of("replay", "far.script", status=NOT_ACCEPTABLE)["outcome"], ("unreachable", "blends_overlap"))
 
 
 if __name__ == "__main__":

@@ -81,6 +81,12 @@ def ring(center=TUMOR_CENTER_MM, radius=TUMOR_RADIUS_MM, z=BLOCK_MM[2], corners=
     return [(center[0] + radius * math.cos(a), center[1] + radius * math.sin(a), z) for a in angles]
 
 
+def path(points, frame="robot", waypoint=None, **more):
+    """A closed path of a program: `waypoint` and `more` are laid over what every waypoint and the path itself hold."""
+    waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7, **(waypoint or {})} for p in points]
+    return {"frame": frame, "kind": "incise", "closed": True, "waypoints": waypoints, **more}
+
+
 TUMOR_DEPTH_MM = 3.0
 
 

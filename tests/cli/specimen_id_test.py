@@ -36,9 +36,7 @@ class SpecimenIdTest(CommandTest):
         self.assert_refused(done, BAD_DATA, file, f"specimen_id: found {OTHER}", f"specimen, {OWN}")
 
     def test_every_file_of_a_run_carries_it(self):
-        done = self.incise("run", self.case(specimen_id=OWN), "-o", self.out, "--json", *small_case.ACCEPTED)
-        self.assertEqual(done.returncode, DONE, done.stderr)
-        self.assertEqual(json.loads(done.stdout)["specimen_id"], OWN)
+        self.assertEqual(self.json_of("run", self.case(specimen_id=OWN), "-o", self.out, *small_case.ACCEPTED)["specimen_id"], OWN)
         files = {name for name in files_below(self.out) if (self.out / name).is_file()}
         listed = set()
         for name in sorted(files):
@@ -126,8 +124,7 @@ class SpecimenIdTest(CommandTest):
         self.json_of("surface", self.case(specimen_id=OTHER), "-o", "tissue.ply")
         self.assert_other_specimen(self.incise("export", self.path(), "--surface", "tissue.ply", "-o", "cut.script"), "tissue.ply")
         self.assert_nothing_written(self.folder / "cut.script")
-        done = self.incise("export", self.path(), "--registration", self.registration(OWN), "--accept", "not_simulated", "-o", "cut.script")
-        self.assertEqual(done.returncode, DONE, done.stderr)
+        self.incise("export", self.path(), "--registration", self.registration(OWN), "--accept", "not_simulated", "-o", "cut.script", status=DONE)
         self.assertIn(f"# incise.specimen_id: {OWN}\n", (self.folder / "cut.script").read_text())
 
     def test_export_holds_a_registration_to_the_clouds_it_was_made_from(self):
@@ -139,8 +136,7 @@ class SpecimenIdTest(CommandTest):
         cloud.write_text("another cloud")
         self.assert_refused(self.incise(*arguments), BAD_DATA, "registration.json", "source_sha256", "cloud.ply", "register again")
         cloud.unlink()
-        gone = self.incise(*arguments)
-        self.assertEqual(gone.returncode, DONE, gone.stderr)
+        gone = self.incise(*arguments, status=DONE)
         self.assertIn("not checked: whether", gone.stderr)
 
     def test_project_and_assess_refuse_another_specimens_registration(self):

@@ -219,8 +219,7 @@ class AuditTest(CommandTest):
         self.assertEqual(result["findings_by_rule"]["sd_too_large"], 22)
         self.assertEqual(result["findings_by_rule"]["pooled_mean_outside"], 1)
         self.assertEqual(result["score_baseline_mm"]["rows"], 20)
-        done = self.incise("audit", TABLES / "table_1.csv")
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE)
+        done = self.incise("audit", TABLES / "table_1.csv", status=NOT_ACCEPTABLE)
         said = done.stdout
         self.assertIn("speed_mm_s 17, dullness 5", said)
         self.assertIn("pooled mean 0.8 lies outside the means of its parts", said)

@@ -184,13 +184,17 @@ class Calls(StudioTest):
         finally:
             connection.close()
 
-    def test_a_change_during_a_run_is_no_part_of_its_result(self):
-        case = self.small(LONG_CUT)
-        studio = self.studio(case)
+    def cutting(self, studio):
+        """A run that has come to its cut: the thread that asked for it, and the list that its answer will be in."""
         answers = []
         asking = threading.Thread(target=lambda: answers.append(studio.call("run")))
         asking.start()
         self.wait_until(lambda: any(one["stage"].startswith("cut") for one in studio.call("state")[1]["running"]))
+        return asking, answers
+
+    def test_a_change_during_a_run_is_no_part_of_its_result(self):
+        studio = self.studio(self.small(LONG_CUT))
+        asking, answers = self.cutting(studio)
         status, _ = studio.call("change", {"revision": studio.call("case")[1]["revision"], "set": {"plan.depth_mm": 4}})
         self.assertEqual(status, 200)
         for other in ("body", "run", "lay"):
@@ -202,10 +206,7 @@ class Calls(StudioTest):
 
     def test_a_run_that_is_stopped_goes_on(self):
         studio = self.studio(self.small(LONG_CUT))
-        answers = []
-        asking = threading.Thread(target=lambda: answers.append(studio.call("run")))
-        asking.start()
-        self.wait_until(lambda: any(one["stage"].startswith("cut") for one in studio.call("state")[1]["running"]))
+        asking, answers = self.cutting(studio)
         studio.call("stop", {"call": "run"})
         asking.join()
         self.assertEqual(answers[0][0], 499, answers)
@@ -214,10 +215,7 @@ class Calls(StudioTest):
 
     def test_a_worker_that_is_killed_takes_nothing_with_it(self):
         studio = self.studio(self.small(LONG_CUT))
-        answers = []
-        asking = threading.Thread(target=lambda: answers.append(studio.call("run")))
-        asking.start()
-        self.wait_until(lambda: any(one["stage"].startswith("cut") for one in studio.call("state")[1]["running"]))
+        asking, answers = self.cutting(studio)
         for worker in children_of(studio.process.pid):
             os.kill(worker, signal.SIGKILL)
         asking.join()

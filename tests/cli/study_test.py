@@ -14,8 +14,7 @@ SMALL = ("experiment", "--specimens", "2", "--outside", "1", "--quick", "--withh
 
 class StudyTest(CommandTest):
     def test_specimens_that_cannot_be_halved_are_refused(self):
-        done = self.incise("experiment", "--specimens", "3", "-o", "study")
-        self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+        done = self.incise("experiment", "--specimens", "3", "-o", "study", status=BAD_CASE)
         for words in ("--specimens", "found 3", "even"):
             self.assertIn(words, done.stderr)
         self.assert_nothing_written(self.folder / "study")
@@ -24,12 +23,10 @@ class StudyTest(CommandTest):
         notes = self.folder / "study" / "advice" / "notes.txt"
         notes.parent.mkdir(parents=True)
         notes.write_text("mine")
-        done = self.incise("experiment", "--quick", "-o", "study")
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        done = self.incise("experiment", "--quick", "-o", "study", status=BAD_DATA)
         self.assertIn("another origin", done.stderr)
         (self.folder / "study" / "experiment.json").write_text('{"schema": "incise.experiment/1", "seed": 1}')
-        done = self.incise("experiment", "--quick", "--seed", "1", "-o", "study")
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        done = self.incise("experiment", "--quick", "--seed", "1", "-o", "study", status=BAD_DATA)
         self.assertIn("advice", done.stderr)
         self.assertEqual(notes.read_text(), "mine")
 
@@ -39,24 +36,21 @@ class StudyTest(CommandTest):
         kept.write_text('{"schema": "incise.experiment/1", "seed": 521}')
         report = self.folder / "study" / "report.html"
         report.write_text("an older one")
-        done = self.incise("experiment", "--quick", "--seed", "999", "-o", "study")
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        done = self.incise("experiment", "--quick", "--seed", "999", "-o", "study", status=BAD_DATA)
         for words in ("experiment.json", "seed", "521", "999"):
             self.assertIn(words, done.stderr)
         self.assertEqual(report.read_text(), "an older one")
 
     def test_laboratories_are_not_mixed(self):
         for option in (("--outside", "1"), ("--known-physics",)):
-            done = self.incise("experiment", "--quick", "--bench", "2", *option, "-o", "study")
-            self.assertEqual(done.returncode, BAD_CASE, done.stderr)
+            done = self.incise("experiment", "--quick", "--bench", "2", *option, "-o", "study", status=BAD_CASE)
             for words in (option[0], "second bench"):
                 self.assertIn(words, done.stderr)
             self.assert_nothing_written(self.folder / "study")
         kept = self.folder / "study" / "experiment.json"
         kept.parent.mkdir(exist_ok=True)
         kept.write_text('{"schema": "incise.experiment/1", "seed": 1}')
-        done = self.incise("experiment", "--quick", "--bench", "2", "--seed", "1", "-o", "study")
-        self.assertEqual(done.returncode, BAD_DATA, done.stderr)
+        done = self.incise("experiment", "--quick", "--bench", "2", "--seed", "1", "-o", "study", status=BAD_DATA)
         for words in ("experiment.json", "bench", "found 1", "2, that of this command"):
             self.assertIn(words, done.stderr)
 

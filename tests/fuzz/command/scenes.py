@@ -139,8 +139,7 @@ def ring(radius, count=24, center=(600.0, 0.0, 100.0)):
 
 
 def write_robot_files(folder, command):
-    waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in ring(15.0)]
-    path = {"frame": "robot", "kind": "incise", "closed": True, "waypoints": waypoints, "tumor_edge": ring(10.0)}
+    path = small_case.path(ring(15.0), tumor_edge=ring(10.0))
     (folder / "path.json").write_text(json.dumps(path))
     (folder / "sim.json").write_text(json.dumps(dict(path, frame="sim_stretched")))
     plate = [(570.0 + 1.5 * i, -30.0 + 1.5 * j, 100.0) for i in range(41) for j in range(41)]

@@ -37,8 +37,7 @@ def circle(radius=15.0, count=8):
 
 
 def path():
-    waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7} for p in circle()]
-    return {"frame": "robot", "kind": "incise", "closed": True, "waypoints": waypoints, "tumor_edge": circle(10.0)}
+    return small_case.path(circle(), tumor_edge=circle(10.0))
 
 
 def surfaces():
