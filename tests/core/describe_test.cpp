@@ -1,8 +1,10 @@
+#include "support/refusal.hpp"
+
 #include <incise/core/described_bytes.hpp>
 #include <incise/core/error.hpp>
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
@@ -114,13 +116,8 @@ TEST(DescribedBytes, OfAnyOtherLengthAreRefused) {
 TEST(DescribedBytes, AreRefusedWithPlaceAndField) {
   Outer o = an_outer();
   o.last->count = 11;
-  try {
-    static_cast<void>(from_bytes<Outer>(bytes_of(o), "entry"));
-    FAIL() << "expected DataError";
-  } catch (const DataError& error) {
-    EXPECT_NE(std::string(error.what()).find("count: found 11, expected a number in [0, 10]"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_THAT(testing::refusal_of<DataError>([&] { return from_bytes<Outer>(bytes_of(o), "entry"); }),
+              ::testing::HasSubstr("count: found 11, expected a number in [0, 10]"));
 }
 
 TEST(DescribedBytes, TakeNoMoreMemoryThanTheBytesAllow) {

@@ -1,3 +1,5 @@
+#include "support/refusal.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/utf8.hpp>
 
@@ -66,12 +68,8 @@ TEST(DataError, IsUtf8WhateverWasFound) {
 
 TEST(Require, ThrowsInvalidArgumentThatNamesTheFunction) {
   EXPECT_NO_THROW(need_positive(1.0));
-  try {
-    need_positive(-1.0);
-    FAIL() << "expected InvalidArgument";
-  } catch (const InvalidArgument& error) {
-    EXPECT_STREQ(error.what(), "need_positive: expected a value above 0, found -1");
-  }
+  EXPECT_EQ(testing::refusal_of<InvalidArgument>([] { need_positive(-1.0); }),
+            "need_positive: expected a value above 0, found -1");
 }
 
 TEST(InvalidArgument, TellsAPersonWhatIsWrongWithoutTheFunction) {

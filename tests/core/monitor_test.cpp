@@ -1,3 +1,5 @@
+#include "support/refusal.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/monitor.hpp>
 
@@ -28,12 +30,8 @@ TEST(Monitor, NeverStopsByDefault) {
 }
 
 TEST(Monitor, StopsAComputationByNameWhenAsked) {
-  try {
-    throw_if_cancelled(StoppingMonitor(), "meshing");
-    FAIL() << "expected Cancelled";
-  } catch (const Cancelled& error) {
-    EXPECT_STREQ(error.what(), "meshing was interrupted");
-  }
+  EXPECT_EQ(testing::refusal_of<Cancelled>([] { throw_if_cancelled(StoppingMonitor(), "meshing"); }),
+            "meshing was interrupted");
 }
 
 TEST(StopOnly, StopsWithTheOuterMonitorAndTellsItNothing) {

@@ -1,9 +1,10 @@
+#include "support/refusal.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
 #include <incise/core/workers.hpp>
 
 #include <gtest/gtest.h>
-
 #include <sys/resource.h>
 
 #include <cmath>
@@ -49,14 +50,10 @@ TEST_P(WorkersWith, VisitEveryItemOnce) {
 TEST_P(WorkersWith, RethrowTheExceptionOfTheLowestChunkAndStayUsable) {
   Workers workers(GetParam());
   for (int loop = 0; loop < 20; ++loop) {
-    try {
-      workers.for_chunks(100, 10, [](std::size_t chunk, std::size_t, std::size_t) {
-        if (chunk == 3 || chunk == 7) throw Error("chunk " + std::to_string(chunk));
-      });
-      FAIL() << "expected an exception";
-    } catch (const Error& error) {
-      EXPECT_STREQ(error.what(), "chunk 3");
-    }
+    const auto work = [](std::size_t chunk, std::size_t, std::size_t) {
+      if (chunk == 3 || chunk == 7) throw Error("chunk " + std::to_string(chunk));
+    };
+    EXPECT_EQ(testing::refusal_of<Error>([&] { workers.for_chunks(100, 10, work); }), "chunk 3");
   }
   EXPECT_NO_THROW(workers.for_each(100, 10, [](std::size_t) {}));
 }

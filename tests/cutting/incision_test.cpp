@@ -1,7 +1,10 @@
 #include "cutting/ring_in_a_block.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/cutting/divided_mesh.hpp>
+
+#include <gmock/gmock.h>
 
 namespace incise {
 namespace {
@@ -242,16 +245,13 @@ class StepCounter : public Monitor {
 };
 
 TEST_F(Incision, ATumourThatCannotBeMeasuredIsRefusedBeforeTheCut) {
-  const auto refusal = [this](const ToolPath& path) -> std::string {
+  const auto refusal = [this](const ToolPath& path) {
     StepCounter counter;
     Workers workers(1);
-    try {
-      static_cast<void>(simulate_incision(model_, rest_state(model_), path, settings_, workers, counter));
-    } catch (const InvalidArgument& error) {
-      EXPECT_EQ(counter.steps, 0);
-      return error.what();
-    }
-    return "nothing";
+    const std::string message = testing::refusal_of<InvalidArgument>(
+        [&] { return simulate_incision(model_, rest_state(model_), path, settings_, workers, counter); });
+    EXPECT_EQ(counter.steps, 0);
+    return message;
   };
   ToolPath path = ring(4.0);
   path.tumor_edge.points[3].z() += 0.6;
@@ -268,13 +268,8 @@ TEST_F(Incision, ATumourThatCannotBeMeasuredIsRefusedBeforeTheCut) {
 TEST_F(Incision, SettingsThatCannotBeUsedAreListed) {
   settings_.cut.speed_mm_s = 0.0;
   settings_.frames = -1;
-  try {
-    static_cast<void>(cut(ring(4.0)));
-    FAIL() << "expected InvalidArgument";
-  } catch (const InvalidArgument& error) {
-    EXPECT_NE(std::string(error.what()).find("speed_mm_s"), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("frames"), std::string::npos);
-  }
+  EXPECT_THAT(testing::refusal_of<InvalidArgument>([&] { return cut(ring(4.0)); }),
+              ::testing::AllOf(::testing::HasSubstr("speed_mm_s"), ::testing::HasSubstr("frames")));
 }
 
 }  // namespace

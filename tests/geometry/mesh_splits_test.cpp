@@ -1,3 +1,5 @@
+#include "support/refusal.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/geometry/mesh_splits.hpp>
 
@@ -54,13 +56,8 @@ TEST(MeshSplits, TheSharesOfATetAddUpToOne) {
 }
 
 TEST(MeshSplits, OfAnotherMeshAreRefused) {
-  const auto refusal = [](const MeshSplits& bad) -> std::string {
-    try {
-      static_cast<void>(split_mesh(pair(), bad));
-    } catch (const InvalidArgument& error) {
-      return error.what();
-    }
-    return "nothing";
+  const auto refusal = [](const MeshSplits& bad) {
+    return testing::refusal_of<InvalidArgument>([&] { return split_mesh(pair(), bad); });
   };
   MeshSplits bad = splits();
   bad.vertices[0] = v(5);

@@ -1,5 +1,6 @@
 // What must not pass for one simple red and one simple green ring without a word.
 #include "photo_scene.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 
@@ -16,14 +17,8 @@ using ::testing::HasSubstr;
 
 const Vec3 kMiddle(15.0, 15.0, 0.0);
 
-/// What the refusal says; empty where nothing was refused.
 std::string refusal(const Scene& s) {
-  try {
-    static_cast<void>(found_in(s));
-  } catch (const DataError& error) {
-    return error.what();
-  }
-  return "";
+  return testing::refusal_of<DataError>([&] { return found_in(s); });
 }
 
 /// r = size (1 + a cos t): for a > 1 the curve crosses itself and has an inner loop.

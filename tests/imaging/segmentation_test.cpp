@@ -1,3 +1,5 @@
+#include "support/refusal.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/geometry/iso_surface.hpp>
 #include <incise/imaging/made_skin.hpp>
@@ -15,7 +17,7 @@
 namespace incise {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 // A CT whose voxels show, without noise, the mean of `hu` over 4³ points each.
 CtVolume scan_of(const VolumeGrid& grid, const std::function<double(const Vec3&)>& hu) {
@@ -53,12 +55,7 @@ Segmentation run(const CtVolume& ct, const SegmentationSettings& settings = {}) 
 }
 
 std::string message_of(const CtVolume& ct, const SegmentationSettings& settings) {
-  try {
-    static_cast<void>(run(ct, settings));
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return "no CaseError";
+  return testing::refusal_of<CaseError>([&] { return run(ct, settings); });
 }
 
 constexpr double kBallVolume = 4.0 / 3.0 * 3.14159265358979 * 1000.0;  // radius 10 mm
@@ -150,7 +147,7 @@ TEST(Segmentation, RefusesAStrokeWithoutPointsAndASeedThatIsTakenAway) {
   EXPECT_THAT(message_of(ct, settings), HasSubstr("edits[0].path_mm"));
   settings.edits = {{false, 2.0, {Vec3(20, 20, 20)}}};
   settings.seeds_mm = {Vec3(20, 20, 20)};
-  EXPECT_THAT(message_of(ct, settings), testing::AllOf(HasSubstr("seed_mm[0]"), HasSubstr("edits")));
+  EXPECT_THAT(message_of(ct, settings), ::testing::AllOf(HasSubstr("seed_mm[0]"), HasSubstr("edits")));
 }
 
 TEST(Segmentation, TakesLabelsNearTheEdgeOfTheirGridAsTheyAre) {
@@ -192,12 +189,9 @@ TEST(Segmentation, ListsEverySettingThatIsWrongForLabels) {
   Workers workers(1);
   SegmentationSettings settings;
   settings.label_values = {0, 7, 256};
-  try {
-    static_cast<void>(segment_labels(labels_of(ball_of_tissue(), -475, 1), settings, workers, monitor));
-    FAIL() << "values out of range were taken";
-  } catch (const CaseError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(HasSubstr("label_values[0]"), HasSubstr("label_values[2]")));
-  }
+  EXPECT_THAT(testing::refusal_of<CaseError>(
+                  [&] { return segment_labels(labels_of(ball_of_tissue(), -475, 1), settings, workers, monitor); }),
+              ::testing::AllOf(HasSubstr("label_values[0]"), HasSubstr("label_values[2]")));
 }
 
 TEST(Segmentation, TakesLabelsWhoseCentresLieOnTheRegionsBorder) {
@@ -216,13 +210,8 @@ TEST(Segmentation, RefusesARegionOrASeedWithoutALabel) {
   Monitor monitor;
   Workers workers(2);
   const LabelVolume labels = labels_of(ball_of_tissue(), -475, 1);
-  const auto refusal = [&](const LabelVolume& of, const SegmentationSettings& settings) -> std::string {
-    try {
-      static_cast<void>(segment_labels(of, settings, workers, monitor));
-    } catch (const CaseError& error) {
-      return error.what();
-    }
-    return "no CaseError";
+  const auto refusal = [&](const LabelVolume& of, const SegmentationSettings& settings) {
+    return testing::refusal_of<CaseError>([&] { return segment_labels(of, settings, workers, monitor); });
   };
   EXPECT_THAT(refusal(labels_of(ball_of_tissue(), 1000, 1), {}), HasSubstr("0 in every voxel of the region"));
   SegmentationSettings corner;
@@ -549,7 +538,8 @@ TEST(Segmentation, CautionsWhereSmoothingTakesAPartOfASmallBody) {
   const Segmentation small = run(body(3.0), longer);  // 6 mm across
   ASSERT_EQ(small.verdict.reasons().size(), 1U);
   EXPECT_EQ(small.verdict.reasons()[0].id, "scan");
-  EXPECT_THAT(small.verdict.reasons()[0].message, testing::AllOf(HasSubstr("smoothing over 0.6 mm"), HasSubstr("smoothing_mm (about a voxel)")));
+  EXPECT_THAT(small.verdict.reasons()[0].message,
+              ::testing::AllOf(HasSubstr("smoothing over 0.6 mm"), HasSubstr("smoothing_mm (about a voxel)")));
   EXPECT_LT(small.occupancy_volume_mm3, 0.97 * 36.0 * 3.14159265);
   const Segmentation kept = run(body(3.0));  // by default over 1.2 voxels of 0.2 mm
   EXPECT_DOUBLE_EQ(kept.smoothing_mm, 0.24);
@@ -575,7 +565,8 @@ TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
   const Segmentation found = segment(ball_of_tissue(), settings, workers, monitor);
   ASSERT_EQ(found.verdict.reasons().size(), 1U);
   EXPECT_EQ(found.verdict.reasons()[0].id, "scan");
-  EXPECT_THAT(found.verdict.reasons()[0].message, testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
+  EXPECT_THAT(found.verdict.reasons()[0].message,
+              ::testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
   EXPECT_TRUE(monitor.is_monotone);
   EXPECT_EQ(monitor.last, 1.0);
 }
@@ -585,11 +576,11 @@ TEST(Segmentation, RefusesSeedsAndRegionsThatDoNotFitTheVolume) {
   SegmentationSettings settings;
   settings.seeds_mm = {Vec3(15, 15, 99)};
   EXPECT_THAT(message_of(ct, settings),
-              testing::AllOf(HasSubstr("seed_mm[0]: found [15, 15, 99]"),
-                             HasSubstr("a point inside the volume, [[0, 0, 0], [59, 30, 30]] mm")));
+              ::testing::AllOf(HasSubstr("seed_mm[0]: found [15, 15, 99]"),
+                               HasSubstr("a point inside the volume, [[0, 0, 0], [59, 30, 30]] mm")));
   settings.seeds_mm = {Vec3(15, 15, 15), Vec3(1, 1, 1)};
-  EXPECT_THAT(message_of(ct, settings), testing::AllOf(HasSubstr("seed_mm[1]: found [1, 1, 1] with -1000 HU"),
-                                                       HasSubstr("window_hu [-20, 180]")));
+  EXPECT_THAT(message_of(ct, settings), ::testing::AllOf(HasSubstr("seed_mm[1]: found [1, 1, 1] with -1000 HU"),
+                                                         HasSubstr("window_hu [-20, 180]")));
   settings.seeds_mm = {Vec3(15, 15, 15), Vec3(45, 15, 15)};
   EXPECT_THAT(message_of(ct, settings), HasSubstr("another piece"));
   settings.seeds_mm = {Vec3(45, 15, 15)};
@@ -607,7 +598,7 @@ TEST(Segmentation, RefusesAWindowWithoutTissueAndAnOpeningThatLeavesNone) {
   settings.window_low_hu = 300.0;
   settings.window_high_hu = 400.0;
   EXPECT_THAT(message_of(ball_of_tissue(), settings),
-              testing::AllOf(HasSubstr("no voxel with HU in [300, 400]"), HasSubstr("-1000 to 50 HU")));
+              ::testing::AllOf(HasSubstr("no voxel with HU in [300, 400]"), HasSubstr("-1000 to 50 HU")));
   settings = {};
   settings.opening_radius_mm = 12.0;
   EXPECT_THAT(message_of(ball_of_tissue(), settings), HasSubstr("opening_radius_mm: found 12, which leaves nothing"));
@@ -627,8 +618,8 @@ TEST(Segmentation, ListsEverySettingThatIsWrong) {
   settings.margin_voxels = 1;
   EXPECT_EQ(validate(settings).size(), 6U);
   EXPECT_THAT(message_of(ball_of_tissue(), settings),
-              testing::AllOf(HasSubstr("6 violation(s)"), HasSubstr("window_hu[0]: found 200"),
-                             HasSubstr("margin_voxels: found 1")));
+              ::testing::AllOf(HasSubstr("6 violation(s)"), HasSubstr("window_hu[0]: found 200"),
+                               HasSubstr("margin_voxels: found 1")));
 }
 
 TEST(Segmentation, RefusesAVolumeThatContradictsItself) {
@@ -646,7 +637,7 @@ struct PhantomCase {
   Vec3 spacing_mm;
 };
 
-class SegmentationOfPhantoms : public testing::TestWithParam<PhantomCase> {};
+class SegmentationOfPhantoms : public ::testing::TestWithParam<PhantomCase> {};
 
 TEST_P(SegmentationOfPhantoms, FindsTheTrueVolumeAndTheTrueSkin) {
   Monitor monitor;
@@ -684,8 +675,8 @@ TEST_P(SegmentationOfPhantoms, FindsTheTrueVolumeAndTheTrueSkin) {
 }
 
 INSTANTIATE_TEST_SUITE_P(SeedsAndVoxels, SegmentationOfPhantoms,
-                         testing::Values(PhantomCase{1, Vec3::Constant(0.8)}, PhantomCase{2, Vec3(0.7, 0.7, 1.0)},
-                                         PhantomCase{3, Vec3(1.0, 1.0, 1.0)}, PhantomCase{17, Vec3(0.9, 0.9, 1.5)}));
+                         ::testing::Values(PhantomCase{1, Vec3::Constant(0.8)}, PhantomCase{2, Vec3(0.7, 0.7, 1.0)},
+                                           PhantomCase{3, Vec3(1.0, 1.0, 1.0)}, PhantomCase{17, Vec3(0.9, 0.9, 1.5)}));
 
 }  // namespace
 }  // namespace incise

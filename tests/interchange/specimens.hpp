@@ -1,5 +1,7 @@
 #pragma once
 
+#include "support/refusal.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/interchange/interchange.hpp>
 
@@ -85,12 +87,8 @@ inline std::string comments(pugi::xml_node node) {
 
 template <class Make>
 std::string refused_field(const Make& make) {
-  try {
-    static_cast<void>(make());
-  } catch (const CaseError& error) {
-    return error.field();
-  }
-  return "accepted";
+  const auto error = error_of<CaseError>(make);
+  return error ? error->field() : "accepted";
 }
 
 }  // namespace incise::testing

@@ -11,7 +11,7 @@
 namespace incise {
 namespace {
 
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using incise::testing::write_file;
 using ::testing::AllOf;
@@ -25,7 +25,7 @@ class ContourFile : public ::testing::Test {
     return read_contour(write_file(folder_ / name, text), is_closed);
   }
   std::string message(const std::string& name, std::string_view text, bool is_closed = true) {
-    return data_error_of([&] { static_cast<void>(read(name, text, is_closed)); });
+    return refusal_of<DataError>([&] { return read(name, text, is_closed); });
   }
   TemporaryFolder folder_;
 };
@@ -95,7 +95,7 @@ TEST_F(ContourFile, IsNotWrittenWithNumbersThatAreNotFinite) {
 TEST_F(ContourFile, VtpReadsBackTheSameDoublesAndKnowsWhetherItIsClosed) {
   write_contour_vtp(folder_ / "a.vtp", kTriangle, {{"signed_error_mm", {1, {1.0, 2.0, 3.0}}}});
   EXPECT_EQ(read_contour(folder_ / "a.vtp").points, kTriangle.points);
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_contour(folder_ / "a.vtp", false)); }),
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_contour(folder_ / "a.vtp", false); }),
               HasSubstr("found a closed curve, expected an open curve"));
   write_contour_vtp(folder_ / "b.vtp", {kTriangle.points, false});
   EXPECT_FALSE(read_contour(folder_ / "b.vtp", false).is_closed);
@@ -107,14 +107,13 @@ TEST_F(ContourFile, VtpThatRepeatsItsFirstIndexMayHaveALongLastSide) {
   write_contour_vtp(folder_ / "closed.vtp", chord);
   EXPECT_EQ(read_contour(folder_ / "closed.vtp").points, chord.points);
   write_contour_vtp(folder_ / "open.vtp", {chord.points, false});
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_contour(folder_ / "open.vtp")); }),
-              HasSubstr("ends 5 mm apart"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_contour(folder_ / "open.vtp"); }), HasSubstr("ends 5 mm apart"));
 }
 
 TEST_F(ContourFile, VtpHasToHoldOnePolyline) {
   const std::vector<Contour> two{kTriangle, kTriangle};
   write_vtp(folder_ / "a.vtp", two);
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_contour(folder_ / "a.vtp")); }),
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_contour(folder_ / "a.vtp"); }),
               HasSubstr("found 2 polylines, expected one"));
 }
 

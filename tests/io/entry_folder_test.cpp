@@ -1,10 +1,11 @@
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/entry_folder.hpp>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <fstream>
 
@@ -15,12 +16,7 @@ class EntryFolderTest : public ::testing::Test {
  protected:
   [[nodiscard]] EntryFolder open() const { return EntryFolder(folder_ / "cache"); }
   void expect_refused(const std::string& says) const {
-    try {
-      static_cast<void>(open());
-      FAIL() << "expected DataError: " << says;
-    } catch (const DataError& error) {
-      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
-    }
+    EXPECT_THAT(testing::refusal_of<DataError>([&] { return open(); }), ::testing::HasSubstr(says));
   }
   testing::TemporaryFolder folder_;
   const std::string entry_ = std::string(kCacheMagic) + "what is kept";

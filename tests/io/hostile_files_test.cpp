@@ -20,7 +20,7 @@
 namespace incise {
 namespace {
 
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -31,7 +31,7 @@ void write(const std::filesystem::path& file, const std::string& bytes) { std::o
 std::string ply_says(const std::string& header, const std::string& body) {
   const TemporaryFolder folder;
   write(folder / "a.ply", "ply\nformat binary_little_endian 1.0\n" + header + "end_header\n" + body);
-  return data_error_of([&] { static_cast<void>(read_cloud(folder / "a.ply")); });
+  return refusal_of<DataError>([&] { return read_cloud(folder / "a.ply"); });
 }
 
 const std::string kXyz = "property float x\nproperty float y\nproperty float z\n";
@@ -65,7 +65,8 @@ TEST(HostileJson, DeepNestingIsRefusedBeforeAnybodyWalksThroughIt) {
   for (const char* bracket : {"[", "{\"a\":"}) {
     std::string text;
     for (int level = 0; level < 73000; ++level) text += bracket;
-    EXPECT_THAT(data_error_of([&] { static_cast<void>(parse_json(text, "deep.json")); }), AllOf(HasSubstr("deep.json"), HasSubstr("nested more than 64 deep")));
+    EXPECT_THAT(refusal_of<DataError>([&] { return parse_json(text, "deep.json"); }),
+                AllOf(HasSubstr("deep.json"), HasSubstr("nested more than 64 deep")));
   }
   std::string sound = "1";
   for (int level = 0; level < 60; ++level) sound = "[" + sound + "]";
@@ -92,33 +93,35 @@ TEST(HostileVtk, DataThatUnpackToFarMoreThanTheFileAreRefused) {
         "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt32\" compressor=\"vtkZLibDataCompressor\"><PolyData><Piece "
         "NumberOfPoints=\"1\"><Points><DataArray type=\"UInt8\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points></Piece>"
         "</PolyData><AppendedData encoding=\"raw\">_" + data + "</AppendedData></VTKFile>");
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_cloud(folder / "bomb.vtp")); }), HasSubstr("unpack to more than"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_cloud(folder / "bomb.vtp"); }), HasSubstr("unpack to more than"));
 }
 
 TEST(HostileVtk, ALegacyArrayThatClaimsMoreThanItsFileIsRefused) {
   const TemporaryFolder folder;
   write(folder / "a.vtk", "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 0 float\nFIELD f 1\nq 90 90 double\n1 2 3 " + std::string(200, ' '));
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_tet_mesh(folder / "a.vtk")); }), HasSubstr("a.vtk"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_tet_mesh(folder / "a.vtk"); }), HasSubstr("a.vtk"));
 }
 
 TEST(InputFiles, APipeADeviceAndAFolderAreRefusedByEveryReader) {
   const TemporaryFolder folder;
   ASSERT_EQ(::mkfifo((folder / "pipe.ply").c_str(), 0600), 0);
   ASSERT_EQ(::mkfifo((folder / "pipe.json").c_str(), 0600), 0);
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_cloud(folder / "pipe.ply")); }), AllOf(HasSubstr("pipe.ply"), HasSubstr("found a pipe")));
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_json(folder / "pipe.json")); }), HasSubstr("found a pipe"));
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(sha256_of_file(folder / "pipe.json")); }), HasSubstr("found a pipe"));
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_json("/dev/zero")); }), HasSubstr("found a device"));
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_json(folder.path())); }), HasSubstr("found a folder"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_cloud(folder / "pipe.ply"); }),
+              AllOf(HasSubstr("pipe.ply"), HasSubstr("found a pipe")));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_json(folder / "pipe.json"); }), HasSubstr("found a pipe"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return sha256_of_file(folder / "pipe.json"); }), HasSubstr("found a pipe"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_json("/dev/zero"); }), HasSubstr("found a device"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_json(folder.path()); }), HasSubstr("found a folder"));
   std::filesystem::create_symlink("/dev/zero", folder / "link.json");
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_json(folder / "link.json")); }), HasSubstr("found a device"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_json(folder / "link.json"); }), HasSubstr("found a device"));
 }
 
 TEST(InputFiles, AFileAboveTheLimitIsRefusedByItsSize) {
   const TemporaryFolder folder;
   write(folder / "a", "12345");
   EXPECT_NO_THROW(require_regular_file(folder / "a", 5));
-  EXPECT_THAT(data_error_of([&] { require_regular_file(folder / "a", 4); }), HasSubstr("found 5 bytes, expected at most 4"));
+  EXPECT_THAT(refusal_of<DataError>([&] { require_regular_file(folder / "a", 4); }),
+              HasSubstr("found 5 bytes, expected at most 4"));
 }
 
 /// The names of the files that reading one opens.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "support/data_dir.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
@@ -18,17 +19,6 @@ namespace incise::testing {
 inline std::filesystem::path write_file(const std::filesystem::path& path, std::string_view content) {
   std::ofstream(path, std::ios::binary) << content;
   return path;
-}
-
-/// The message of the DataError that `action` ends in, or "accepted".
-template <class Action>
-std::string data_error_of(Action action) {
-  try {
-    action();
-  } catch (const DataError& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 }  // namespace incise::testing

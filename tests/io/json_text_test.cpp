@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
@@ -29,21 +29,21 @@ TEST(JsonText, RefusesANumberThatIsNotFiniteAndSaysWhereItIs) {
 }
 
 TEST(ParseJson, NamesLineAndColumn) {
-  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("{\n  \"a\": 1,\n  \"b\": nan\n}", "x.json")); }),
+  EXPECT_THAT(refusal_of<DataError>([] { return parse_json("{\n  \"a\": 1,\n  \"b\": nan\n}", "x.json"); }),
               HasSubstr("x.json: line 3, column"));
-  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("{\"a\": [1, 2", "x.json")); }),
+  EXPECT_THAT(refusal_of<DataError>([] { return parse_json("{\"a\": [1, 2", "x.json"); }),
               HasSubstr("found the end of the text"));
-  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("", "x.json")); }), HasSubstr("expected JSON"));
+  EXPECT_THAT(refusal_of<DataError>([] { return parse_json("", "x.json"); }), HasSubstr("expected JSON"));
 }
 
 TEST(ParseJson, RefusesAKeyGivenTwice) {
-  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json(R"({"a": {"b": 1, "b": 2}})", "x.json")); }),
+  EXPECT_THAT(refusal_of<DataError>([] { return parse_json(R"({"a": {"b": 1, "b": 2}})", "x.json"); }),
               HasSubstr("the key 'b' twice"));
   EXPECT_NO_THROW(static_cast<void>(parse_json(R"([{"a": {"b": 1}}, {"a": {"b": 2}}])", "x.json")));
 }
 
 TEST(ParseJson, RefusesANumberThatNoDoubleHolds) {
-  EXPECT_THAT(data_error_of([] { static_cast<void>(parse_json("[1e999]", "x.json")); }), HasSubstr("x.json"));
+  EXPECT_THAT(refusal_of<DataError>([] { return parse_json("[1e999]", "x.json"); }), HasSubstr("x.json"));
 }
 
 }  // namespace

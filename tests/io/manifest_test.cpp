@@ -9,7 +9,7 @@
 namespace incise {
 namespace {
 
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using incise::testing::write_file;
 using ::testing::HasSubstr;
@@ -43,10 +43,9 @@ TEST(Sha256, OfAFolderDependsOnNamesAndContentsOnly) {
 
 TEST(Sha256, NamesWhatCannotBeRead) {
   const TemporaryFolder folder;
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(sha256_of_file(folder / "none")); }), HasSubstr("no such file"));
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(sha256_of_file(folder.path())); }), HasSubstr("found a folder"));
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(sha256_of_folder(folder / "none")); }),
-              HasSubstr("no such folder"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return sha256_of_file(folder / "none"); }), HasSubstr("no such file"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return sha256_of_file(folder.path()); }), HasSubstr("found a folder"));
+  EXPECT_THAT(refusal_of<DataError>([&] { return sha256_of_folder(folder / "none"); }), HasSubstr("no such folder"));
 }
 
 TEST(ManifestFile, ReadsBackWhatWasWritten) {
@@ -86,7 +85,7 @@ TEST(ManifestFile, RefusesSettingsThatAreNotJsonAndTimesThatAreNotFinite) {
 TEST(ManifestFile, NamesAMissingKey) {
   const TemporaryFolder folder;
   write_file(folder / "manifest.json", R"({"version": "1"})");
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_manifest(folder.path())); }),
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_manifest(folder.path()); }),
               HasSubstr("/commit: found no such key"));
 }
 

@@ -10,7 +10,7 @@
 namespace incise {
 namespace {
 
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using incise::testing::write_file;
 using ::testing::HasSubstr;
@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 class MeshFile : public ::testing::Test {
  protected:
   std::string message(const std::string& name, std::string_view text) {
-    return data_error_of([&] { static_cast<void>(read_tet_mesh(write_file(folder_ / name, text))); });
+    return refusal_of<DataError>([&] { return read_tet_mesh(write_file(folder_ / name, text)); });
   }
   TemporaryFolder folder_;
 };
@@ -134,7 +134,7 @@ TEST_F(MeshFile, WithoutTetsIsRefused) {
 }
 
 TEST_F(MeshFile, ThatIsMissingOrOfAnotherKindIsNamed) {
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_tet_mesh(folder_ / "none.vtu")); }),
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_tet_mesh(folder_ / "none.vtu"); }),
               HasSubstr("none.vtu: found no such file"));
   EXPECT_THAT(message("a.stl", ""), HasSubstr("found the ending '.stl', expected .vtu, .vtk, .msh, .node or .ele"));
   EXPECT_THAT(message("a.vtu", "solid x"), HasSubstr("expected a VTK XML file"));
@@ -142,7 +142,7 @@ TEST_F(MeshFile, ThatIsMissingOrOfAnotherKindIsNamed) {
               HasSubstr("found type 'PolyData', expected type 'UnstructuredGrid'"));
   EXPECT_THAT(message("a.vtk", "hello"), HasSubstr("expected '# vtk DataFile Version"));
   write_file(folder_ / "b.node", "4 3 0 0\n");
-  EXPECT_THAT(data_error_of([&] { static_cast<void>(read_tet_mesh(folder_ / "b.node")); }),
+  EXPECT_THAT(refusal_of<DataError>([&] { return read_tet_mesh(folder_ / "b.node"); }),
               HasSubstr("b.ele: found no such file"));
 }
 

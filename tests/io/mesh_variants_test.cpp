@@ -229,7 +229,7 @@ TEST(RealMeshes, SofasBlockIsReadFromItsLegacyFile) {
 
 TEST(RealMeshes, HexahedraAreRefused) {
   INCISE_NEEDS_DATA_DIR();
-  EXPECT_THAT(incise::testing::data_error_of([] {
+  EXPECT_THAT(incise::testing::refusal_of<DataError>([] {
                 static_cast<void>(read_tet_mesh(*data_dir() / "fem/sofa_phantom_cylinder/cylinder_Hexa.msh"));
               }),
               ::testing::HasSubstr("found element type 5, expected linear tetrahedra"));

@@ -12,7 +12,7 @@
 namespace incise {
 namespace {
 
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using nlohmann::json;
 using ::testing::AllOf;
@@ -36,7 +36,7 @@ template <class Change>
 std::string message_after(Change change) {
   json document = json::parse(path_json(sample_path()));
   change(document);
-  return data_error_of([&] { static_cast<void>(tool_path_from_json(document.dump(), "path.json")); });
+  return refusal_of<DataError>([&] { return tool_path_from_json(document.dump(), "path.json"); });
 }
 
 TEST(ToolPathFile, ReadsBackTheSameDoubles) {
@@ -120,7 +120,7 @@ TEST(ToolPathFile, RefusesValuesOutOfRange) {
 }
 
 TEST(ToolPathFile, RefusesTextThatIsNotJson) {
-  EXPECT_THAT(data_error_of([] { static_cast<void>(tool_path_from_json("{\"frame\": NaN}", "path.json")); }),
+  EXPECT_THAT(refusal_of<DataError>([] { return tool_path_from_json("{\"frame\": NaN}", "path.json"); }),
               HasSubstr("path.json: line 1, column"));
 }
 
@@ -155,7 +155,7 @@ TEST(VerdictJson, RefusesAStatusThatIsNotThatOfItsReasonsAndASeverityThatIsNotIt
   const auto says = [](auto change) {
     nlohmann::ordered_json document = to_json(sample_verdict());
     change(document);
-    return data_error_of([&] { static_cast<void>(from_json<Verdict>(document, "x")); });
+    return refusal_of<DataError>([&] { return from_json<Verdict>(document, "x"); });
   };
   EXPECT_THAT(says([](auto& found) { found["status"] = "ok"; }),
               HasSubstr("expected refused, the severity of the worst reason"));

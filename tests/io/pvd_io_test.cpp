@@ -6,7 +6,7 @@
 namespace incise {
 namespace {
 
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using incise::testing::write_file;
 using ::testing::HasSubstr;
@@ -31,7 +31,7 @@ TEST(Pvd, RefusesTimesThatDoNotIncreaseAndAbsoluteNames) {
 TEST(Pvd, NamesWhatIsWrongInAFile) {
   const TemporaryFolder folder;
   const auto message = [&](const char* text) {
-    return data_error_of([&] { static_cast<void>(read_pvd(write_file(folder / "a.pvd", text))); });
+    return refusal_of<DataError>([&] { return read_pvd(write_file(folder / "a.pvd", text)); });
   };
   EXPECT_THAT(message("<VTKFile><Collection></Collection></VTKFile>"), HasSubstr("no DataSet"));
   EXPECT_THAT(message("<VTKFile><Collection><DataSet timestep=\"nan\" file=\"a\"/></Collection></VTKFile>"),

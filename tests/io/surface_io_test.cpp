@@ -11,7 +11,7 @@ namespace incise {
 namespace {
 
 using incise::testing::data_dir;
-using incise::testing::data_error_of;
+using incise::testing::refusal_of;
 using incise::testing::TemporaryFolder;
 using incise::testing::write_file;
 using ::testing::HasSubstr;
@@ -55,7 +55,7 @@ class SurfaceFile : public ::testing::Test {
     return read_surface(write_file(folder_ / name, text));
   }
   std::string message(const std::string& name, std::string_view text) {
-    return data_error_of([&] { static_cast<void>(read(name, text)); });
+    return refusal_of<DataError>([&] { return read(name, text); });
   }
   TemporaryFolder folder_;
 };
@@ -89,8 +89,7 @@ TEST_F(SurfaceFile, CloudsHaveNoTriangles) {
   write_vtp(folder_ / "a.vtp", cloud);
   for (const char* name : {"a.ply", "a.vtp"}) {
     EXPECT_EQ(read_cloud(folder_ / name).vertices, cloud.vertices);
-    EXPECT_THAT(data_error_of([&] { static_cast<void>(read_surface(folder_ / name)); }),
-                HasSubstr("found no triangles"));
+    EXPECT_THAT(refusal_of<DataError>([&] { return read_surface(folder_ / name); }), HasSubstr("found no triangles"));
   }
 }
 
@@ -181,7 +180,7 @@ TEST(SurfaceProblems, NameTheOpenEdges) {
   ASSERT_EQ(problems.size(), 1u);
   EXPECT_EQ(problems[0].kind, Kind::OpenBoundary);
   EXPECT_EQ(problems[0].count, 3u);
-  EXPECT_THAT(data_error_of([&] { require_closed_manifold(surface, "a.stl"); }),
+  EXPECT_THAT(refusal_of<DataError>([&] { require_closed_manifold(surface, "a.stl"); }),
               HasSubstr("a.stl: surface: found an open boundary (one triangle only) at 3 edges, the first from vertex "
                         "0 to 2, expected a closed"));
 }
@@ -191,7 +190,7 @@ TEST(SurfaceProblems, NameAnEdgeWhereMoreThanTwoTrianglesMeet) {
   surface.vertices.push_back(Vec3(1, 1, 1));
   surface.triangles.push_back(triangle_of(0, 1, 4));
   EXPECT_EQ(kinds_in(surface), (std::vector<Kind>{Kind::NonManifoldEdge, Kind::OpenBoundary}));
-  EXPECT_THAT(data_error_of([&] { require_closed_manifold(surface, "a.stl"); }),
+  EXPECT_THAT(refusal_of<DataError>([&] { require_closed_manifold(surface, "a.stl"); }),
               HasSubstr("more than two triangles meet (non-manifold) at 1 edge, the first from vertex 0 to 1"));
 }
 

@@ -1,6 +1,7 @@
 // DICOM series: what each slice says, and what is refused. Slices are put together by hand.
 #include "io_volume/handmade_files.hpp"
 #include "io_volume/recording_monitor.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
@@ -216,12 +217,8 @@ TEST_F(DicomFolder, RefusesASliceCutShortAtAnyByte) {
   RecordingMonitor monitor;
   for (std::size_t length = 0; length < whole.size(); ++length) {
     write_bytes(folder / "b.dcm", whole.substr(0, length));
-    try {
-      (void)read_ct(folder.path(), {}, monitor);
-      ADD_FAILURE() << "read a slice of " << length << " of " << whole.size() << " bytes";
-    } catch (const DataError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("b.dcm"));
-    }
+    EXPECT_THAT(testing::refusal_of<DataError>([&] { return read_ct(folder.path(), {}, monitor); }), HasSubstr("b.dcm"))
+        << "a slice of " << length << " of " << whole.size() << " bytes";
   }
 }
 

@@ -1,6 +1,7 @@
 // Single-file formats: NRRD, NIfTI, MetaImage.
 #include "io_volume/handmade_files.hpp"
 #include "io_volume/recording_monitor.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
@@ -162,11 +163,7 @@ TEST_P(EveryFormat, LeavesTheOlderFileWhenTheDiskFillsUp) {
   std::string message;
   {
     const FullDisk full_disk;
-    try {
-      write_ct(file, noise);
-    } catch (const DataError& error) {
-      message = error.what();
-    }
+    message = testing::refusal_of<DataError>([&] { write_ct(file, noise); });
   }
   EXPECT_THAT(message, HasSubstr(file.filename().string()));
   EXPECT_TRUE(read_bytes(file) == before);

@@ -1,3 +1,4 @@
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
@@ -88,12 +89,7 @@ class Pooling : public ::testing::Test {
     return pool_experiments(folders, folder_ / "pooled", {"test", 1, 1}, quiet);
   }
   void expect_refused(const std::vector<std::filesystem::path>& folders, const char* why) const {
-    try {
-      static_cast<void>(pool(folders));
-      FAIL() << "expected: " << why;
-    } catch (const DataError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(why));
-    }
+    EXPECT_THAT(testing::refusal_of<DataError>([&] { return pool(folders); }), HasSubstr(why));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "pooled"));
   }
   TemporaryFolder folder_;

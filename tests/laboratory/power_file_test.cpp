@@ -1,3 +1,4 @@
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/described_json.hpp>
@@ -56,12 +57,7 @@ class TimedCutsTest : public ::testing::Test {
     return read_timed_cuts(folder_ / "cuts.csv");
   }
   std::string refusal_of(const std::string& text) {
-    try {
-      (void)read(text);
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "read";
+    return testing::refusal_of<DataError>([&] { return read(text); });
   }
   testing::TemporaryFolder folder_;
 };

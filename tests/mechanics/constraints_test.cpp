@@ -1,4 +1,5 @@
 #include "mechanics/bodies.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/described_bytes.hpp>
 #include <incise/core/error.hpp>
@@ -100,12 +101,10 @@ TEST(Select, PointArrayTakesItsValue) {
 TEST(Select, AnUnknownArrayIsToldWithTheKnownOnes) {
   TetMesh mesh = small_block();
   mesh.point_data["part"] = {1, std::vector<double>(12, 0.0)};
-  try {
-    static_cast<void>(select(mesh, PointArrayRegion{"prat", 3.0}));
-    FAIL() << "expected InvalidArgument";
-  } catch (const InvalidArgument& error) {
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("expected a point array named 'prat', found 'part'"));
-  }
+  EXPECT_THAT(testing::refusal_of<InvalidArgument>([&] {
+                return select(mesh, PointArrayRegion{"prat", 3.0});
+              }),
+              ::testing::HasSubstr("expected a point array named 'prat', found 'part'"));
 }
 
 TEST(Select, ARegionOutsideTheBodyIsEmpty) {

@@ -1,5 +1,6 @@
 // Fibres that run from one region to another.
 #include "mechanics/bodies.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/mechanics/fibre_field.hpp>
@@ -110,12 +111,7 @@ TEST(FibreField, FollowsTheCirclesOfARingTheBetterTheFinerTheMesh) {
 }
 
 std::string field_refusal(const TetMesh& mesh, const FibreField& field) {
-  try {
-    static_cast<void>(fibre_directions(mesh, field));
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return testing::refusal_of<CaseError>([&] { return fibre_directions(mesh, field); });
 }
 
 TEST(FibreField, RefusesRegionsThatDoNotFitTheMesh) {

@@ -1,5 +1,6 @@
 // Supports that are the surface of a holder: contact, reactions, and what is no holder.
 #include "mechanics/bodies.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/mechanics/statics.hpp>
@@ -169,14 +170,11 @@ TEST(Holder, WhatLiesBesideASheetIsNotTouched) {
 }
 
 /// The message of the CaseError for a holder that cannot be used.
-std::string refusal(TriMesh surface, double z = 0.0) {
-  try {
-    static_cast<void>(resting_block(support_of(std::move(surface)), z));
-  } catch (const CaseError& error) {
-    EXPECT_EQ(error.field(), "specimen.constraints[1].surface");
-    return error.what();
-  }
-  return "accepted";
+std::string refusal(const TriMesh& surface, double z = 0.0) {
+  const auto error = testing::error_of<CaseError>([&] { return resting_block(support_of(surface), z); });
+  if (!error) return "accepted";
+  EXPECT_EQ(error->field(), "specimen.constraints[1].surface");
+  return error->what();
 }
 
 TEST(Holder, SaysWhatIsWrongWithASurface) {

@@ -1,4 +1,5 @@
 #include "mechanics/bodies.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/monitor.hpp>
@@ -29,12 +30,8 @@ Vec3 centre(const TetMesh& mesh, const Tet& tet) {
 
 /// The message of the InvalidArgument that a field is refused with.
 std::string refusal(const TetMesh& mesh, const MaterialField& field) {
-  try {
-    static_cast<void>(make_tissue_model(mesh, Material{}, {FixedConstraint{plane_x(0.0)}}, Vec3::Zero(), field));
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "accepted";
+  return testing::refusal_of<InvalidArgument>(
+      [&] { return make_tissue_model(mesh, Material{}, {FixedConstraint{plane_x(0.0)}}, Vec3::Zero(), field); });
 }
 
 /// A bar of which the half beyond x = 10 is ten times stiffer, pulled by 0.2 mm: springs in a row share 10 to 1.

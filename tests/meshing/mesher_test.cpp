@@ -1,4 +1,5 @@
 #include "meshing/shapes.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/meshing/mesher.hpp>
@@ -54,12 +55,7 @@ void expect_sound(const MeshingResult& result) {
 }
 
 std::string message_of(const GrayVolume& occupancy, const SizingField& sizing, const MeshingSettings& settings = {}) {
-  try {
-    static_cast<void>(mesh_labels(occupancy, sizing, settings, silent()));
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "";
+  return testing::refusal_of<InvalidArgument>([&] { return mesh_labels(occupancy, sizing, settings, silent()); });
 }
 
 TEST(MeshLabels, FillsABallWithinOnePercentOfItsVolumeWithoutSlivers) {

@@ -1,4 +1,5 @@
 #include "meshing/shapes.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/meshing/occupancy.hpp>
@@ -22,12 +23,7 @@ double total_mm3(const GrayVolume& volume) {
 }
 
 std::string message_of(const TriMesh& surface) {
-  try {
-    static_cast<void>(occupancy_of(surface, 1.0));
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "";
+  return testing::refusal_of<InvalidArgument>([&] { return occupancy_of(surface, 1.0); });
 }
 
 LabelVolume full_block() {

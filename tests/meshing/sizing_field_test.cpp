@@ -1,4 +1,5 @@
 #include "meshing/shapes.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/meshing/sizing_field.hpp>
@@ -25,12 +26,7 @@ PlannedCut straight_cut() {
 }
 
 std::string message_of(const PlannedCut& cut, const SizingSettings& settings) {
-  try {
-    static_cast<void>(SizingField::around_cut(cut, settings));
-  } catch (const InvalidArgument& error) {
-    return error.what();
-  }
-  return "";
+  return testing::refusal_of<InvalidArgument>([&] { return SizingField::around_cut(cut, settings); });
 }
 
 TEST(SizingField, IsTheSameEverywhereWhenUniform) {

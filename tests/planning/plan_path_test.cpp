@@ -1,5 +1,6 @@
 #include "planning/bodies.hpp"
 #include "support/contour_shapes.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/evaluation/evaluation.hpp>
@@ -18,16 +19,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using testing::refusal_of;
 const Vec3 kDown = -Vec3::UnitZ();
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return "no CaseError";
-}
 
 double margin_error(const ToolPath& path, double margin) {
   double worst = 0.0;
@@ -144,10 +137,10 @@ TEST(PlanRing, TurnsWithTheBodyAndTheApproach) {
 TEST(PlanRing, RefusesAPathOutsideTheTissue) {
   const SurfaceQuery surface(testing::flat_body());  // ends at x = 40
   const Contour near_rim = project_tumor_edge(testing::circle(10.0, 90, Vec3(27, 0, 0)), surface, kDown);
-  EXPECT_THAT(message_of([&] { static_cast<void>(plan_ring(surface, near_rim, {})); }),
+  EXPECT_THAT(refusal_of<CaseError>([&] { return plan_ring(surface, near_rim, {}); }),
               AllOf(HasSubstr("a path outside the tissue"), HasSubstr("the surface ends")));
   const Contour at_rim = project_tumor_edge(testing::circle(10.0, 90, Vec3(24.3, 0, 0)), surface, kDown);
-  EXPECT_THAT(message_of([&] { static_cast<void>(plan_ring(surface, at_rim, {})); }),
+  EXPECT_THAT(refusal_of<CaseError>([&] { return plan_ring(surface, at_rim, {}); }),
               AllOf(HasSubstr("a path outside the tissue"), HasSubstr("too close to the surface's rim")));
   EXPECT_NO_THROW(static_cast<void>(plan_ring(surface, at_rim, {.rim_clearance_mm = 0.5})));
 }
@@ -155,7 +148,7 @@ TEST(PlanRing, RefusesAPathOutsideTheTissue) {
 TEST(PlanRing, RefusesADepthThroughTheTissue) {
   const SurfaceQuery surface(testing::flat_body(4.0));
   const Contour edge = project_tumor_edge(testing::circle(10.0, 90), surface, kDown);
-  EXPECT_THAT(message_of([&] { static_cast<void>(plan_ring(surface, edge, {})); }),
+  EXPECT_THAT(refusal_of<CaseError>([&] { return plan_ring(surface, edge, {}); }),
               AllOf(HasSubstr("depth_mm"), HasSubstr("waypoint 0"), HasSubstr("4.00 mm thick")));
   EXPECT_NO_THROW(static_cast<void>(plan_ring(surface, edge, {.depth_mm = 3.9})));
 }
@@ -184,14 +177,14 @@ TEST(PlanLine, SpacesWaypointsEvenlyFromTheAnteriorEnd) {
 TEST(PlanLine, RefusesALineThatLeavesTheTissue) {
   const SurfaceQuery surface(testing::flat_body());
   const Contour line{.points = {{0, 0, 0}, {39.8, 0, 0}}, .is_closed = false};
-  EXPECT_THAT(message_of([&] { static_cast<void>(plan_line(surface, line, {.kind = PlanKind::Line})); }),
+  EXPECT_THAT(refusal_of<CaseError>([&] { return plan_line(surface, line, {.kind = PlanKind::Line}); }),
               HasSubstr("a path outside the tissue"));
 }
 
 class CheckPath : public ::testing::Test {
  protected:
   [[nodiscard]] std::string refusal() const {
-    return message_of([&] { check_path(path_, surface_, kDown); });
+    return refusal_of<CaseError>([&] { check_path(path_, surface_, kDown); });
   }
   SurfaceQuery surface_{testing::flat_body()};
   ToolPath path_ = plan_ring(surface_, testing::circle(10.0, 360), {});

@@ -1,5 +1,6 @@
 #include "planning/bodies.hpp"
 #include "support/contour_shapes.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/planning/plan_path.hpp>
@@ -14,16 +15,8 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using testing::refusal_of;
 const Vec3 kDown = -Vec3::UnitZ();
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return "no CaseError";
-}
 
 TEST(ProjectTumorEdge, LaysPointsOntoTheSurfaceAlongTheApproach) {
   const SurfaceQuery surface(testing::wedge(0.5));
@@ -50,17 +43,17 @@ TEST(ProjectTumorEdge, NamesThePointThatIsOffTheSurface) {
   const SurfaceQuery surface(testing::flat_body());
   Contour edge = testing::circle(10.0, 60);
   edge.points[7].z() = 6.5;
-  EXPECT_THAT(message_of([&] { static_cast<void>(project_tumor_edge(edge, surface, kDown)); }),
+  EXPECT_THAT(refusal_of<CaseError>([&] { return project_tumor_edge(edge, surface, kDown); }),
               AllOf(HasSubstr("tumour edge off the surface"), HasSubstr("point 7 "), HasSubstr("6.50 mm above"),
                     HasSubstr("within 5 mm")));
   edge.points[7].z() = -6.5;
-  EXPECT_THAT(message_of([&] { static_cast<void>(project_tumor_edge(edge, surface, kDown)); }),
+  EXPECT_THAT(refusal_of<CaseError>([&] { return project_tumor_edge(edge, surface, kDown); }),
               HasSubstr("6.50 mm below"));
 }
 
 TEST(ProjectTumorEdge, NamesThePointThatLiesBesideTheTissue) {
   const SurfaceQuery surface(testing::flat_body());
-  EXPECT_THAT(message_of([&] {
+  EXPECT_THAT(refusal_of<CaseError>([&] {
                 static_cast<void>(project_tumor_edge(testing::circle(10.0, 60, Vec3(35, 0, 0)), surface, kDown));
               }),
               AllOf(HasSubstr("tumour edge off the surface"), HasSubstr("point 0 "), HasSubstr("beside it")));
@@ -69,7 +62,7 @@ TEST(ProjectTumorEdge, NamesThePointThatLiesBesideTheTissue) {
 TEST(ProjectTumorEdge, RefusesWhatIsNoOutline) {
   const SurfaceQuery surface(testing::flat_body());
   const auto refusal = [&](Contour edge) {
-    return message_of([&] { static_cast<void>(project_tumor_edge(edge, surface, kDown)); });
+    return refusal_of<CaseError>([&] { return project_tumor_edge(edge, surface, kDown); });
   };
   EXPECT_THAT(refusal({.points = {{0, 0, 0}, {1, 0, 0}}, .is_closed = true}), HasSubstr("2 points"));
   EXPECT_THAT(refusal({.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, .is_closed = true}), HasSubstr("without an area"));

@@ -1,4 +1,5 @@
 #include "support/contour_shapes.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
@@ -144,13 +145,8 @@ std::string refusal(const TriMesh& cloud, const ProjectSettings& settings = {}, 
   Mat4 T = registration();
   const ToolPath path = simulated(T.inverse());
   T.topRightCorner<3, 1>() += lift;
-  try {
-    const MeasuredSurface surface(cloud, approach_of(path, T));
-    static_cast<void>(project_path(path, T, surface, settings, kName));
-  } catch (const DataError& error) {
-    return error.what();
-  }
-  return "";
+  return testing::refusal_of<DataError>(
+      [&] { return project_path(path, T, MeasuredSurface(cloud, approach_of(path, T)), settings, kName); });
 }
 
 TEST(ProjectPath, ReportsGapsAndRefusesLargeOnes) {
@@ -162,7 +158,7 @@ TEST(ProjectPath, ReportsGapsAndRefusesLargeOnes) {
   EXPECT_NEAR(projected.max_gap_mm, 1.5, 0.3);
   EXPECT_GT(projected.bridged, 0U);
   EXPECT_THAT(refusal(measured(0.0, 3.0)), ::testing::HasSubstr("a gap: the nearest measured point is"));
-  EXPECT_EQ(refusal(measured(0.0, 1.5)), "");
+  EXPECT_EQ(refusal(measured(0.0, 1.5)), "accepted");
 }
 
 TEST(ProjectPath, RefusesAPathBesideOrFarFromTheSurface) {

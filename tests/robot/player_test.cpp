@@ -1,4 +1,5 @@
 #include "robot/ring_path.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/robot/player.hpp>
@@ -272,12 +273,7 @@ TEST(ProgramFromText, ReadsBackWhatWasWritten) {
 }
 
 std::string message_of(const std::string& text, const char* name = "cut.script") {
-  try {
-    static_cast<void>(program_from_text(text, name));
-  } catch (const DataError& error) {
-    return error.what();
-  }
-  return "accepted";
+  return testing::refusal_of<DataError>([&] { return program_from_text(text, name); });
 }
 
 TEST(ProgramFromText, NamesTheLineOfAForeignOrDamagedStatement) {

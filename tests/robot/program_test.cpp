@@ -1,4 +1,5 @@
 #include "robot/ring_path.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/robot/program.hpp>
@@ -176,12 +177,7 @@ TEST(MakeProgram, RefusesWaypointsThatAreNoGood) {
   const auto message = [](auto change) {
     ToolPath path = ring_path();
     change(path);
-    try {
-      static_cast<void>(make_program(path));
-    } catch (const InvalidArgument& error) {
-      return std::string(error.what());
-    }
-    return std::string("accepted");
+    return testing::refusal_of<InvalidArgument>([&] { return make_program(path); });
   };
   EXPECT_THAT(message([](ToolPath& p) { p.waypoints[3].position_mm.x() = std::numeric_limits<double>::quiet_NaN(); }),
               HasSubstr("waypoint 3"));

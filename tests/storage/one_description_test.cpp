@@ -1,5 +1,6 @@
 #include "storage/field_writers.hpp"
 #include "storage/yaml_reader.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/cache.hpp>
 #include <incise/core/described_bytes.hpp>
@@ -36,12 +37,8 @@ Probe from_yaml(const char* text) {
 TEST(OneDescription, AFieldIsReadFromYaml) {
   EXPECT_EQ(from_yaml("{reach_mm: 1.5}").reach_mm, 1.5);
   EXPECT_EQ(from_yaml("{}").reach_mm, 0.25);
-  try {
-    from_yaml("{reach_mm: 6}");
-    FAIL() << "expected a CaseError";
-  } catch (const CaseError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("reach_mm: found 6, expected a number in [0, 5]"));
-  }
+  EXPECT_THAT(testing::refusal_of<CaseError>([] { return from_yaml("{reach_mm: 6}"); }),
+              HasSubstr("reach_mm: found 6, expected a number in [0, 5]"));
   EXPECT_THROW(from_yaml("{reech_mm: 1}"), CaseError);
 }
 

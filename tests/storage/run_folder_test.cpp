@@ -1,4 +1,5 @@
 #include "support/contour_shapes.hpp"
+#include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
@@ -42,6 +43,14 @@ class RunFolderTest : public ::testing::Test {
            "tumor: {contour: tumor.csv}\n"
         << more;
     return read_case(folder_.path());
+  }
+
+  template <class Action>
+  static void expect_file_refused(const Action& action, const char* file, const char* says) {
+    const auto error = testing::error_of<DataError>(action);
+    ASSERT_TRUE(error) << "expected DataError";
+    EXPECT_EQ(error->path().filename(), file);
+    EXPECT_THAT(error->what(), ::testing::HasSubstr(says));
   }
 
   Monitor silent_;
@@ -231,13 +240,8 @@ TEST_F(RunFolderTest, LabelsTakeThePlaceOfThresholdsAndHaveToLieInTheirScan) {
   labels.at(2, 2, 2) = 1;
   write_labels(folder_ / "labels.nrrd", labels);
   EXPECT_NE(opened("").scan_digest(quiet), digest);
-  try {
-    static_cast<void>(opened(", volume: ct.nrrd").read_labels(quiet));
-    FAIL() << "expected DataError";
-  } catch (const DataError& error) {
-    EXPECT_EQ(error.path().filename(), "labels.nrrd");
-    EXPECT_NE(std::string(error.what()).find("tissue inside the volume"), std::string::npos) << error.what();
-  }
+  expect_file_refused([&] { return opened(", volume: ct.nrrd").read_labels(quiet); }, "labels.nrrd",
+                      "tissue inside the volume");
 }
 
 TEST_F(RunFolderTest, ALayerIsHeldAgainstTheLateralMargin) {
@@ -265,26 +269,14 @@ TEST_F(RunFolderTest, ATumourSurfaceWithAHoleIsRefused) {
   std::ofstream(folder_ / "case.yaml")
       << "schema: incise.case/1\nspecimen: {mesh: block.vtu}\ntumor: {contour: tumor.csv, surface: tumor.ply}\n";
   RunFolder run(read_case(folder_.path()), folder_ / "out", {"incise test", 7, 2});
-  try {
-    static_cast<void>(run.read_tumor_surface());
-    FAIL() << "expected DataError";
-  } catch (const DataError& error) {
-    EXPECT_EQ(error.path().filename(), "tumor.ply");
-    EXPECT_NE(std::string(error.what()).find("open boundary"), std::string::npos) << error.what();
-  }
+  expect_file_refused([&] { return run.read_tumor_surface(); }, "tumor.ply", "open boundary");
 }
 
 TEST_F(RunFolderTest, AMeshThatIsNotOneSoundBodyIsRefusedNamingTheFile) {
   TetMesh mesh = make_block(Vec3(10, 20, 5), {2, 4, 1});
   mesh.tets.push_back(mesh.tets[5]);
   write_vtu(folder_ / "block.vtu", mesh);
-  try {
-    static_cast<void>(open().read_specimen_mesh(silent_));
-    FAIL() << "expected DataError";
-  } catch (const DataError& error) {
-    EXPECT_EQ(error.path().filename(), "block.vtu");
-    EXPECT_NE(std::string(error.what()).find("the first is tet 48"), std::string::npos) << error.what();
-  }
+  expect_file_refused([&] { return open().read_specimen_mesh(silent_); }, "block.vtu", "the first is tet 48");
 }
 
 TEST_F(RunFolderTest, HeatIsThatOfThePathThatIsFollowed) {
@@ -323,14 +315,10 @@ TEST_F(RunFolderTest, WhatWasChangedAddedOrDamagedSinceIsRefusedNamingIt) {
   write();
   const std::filesystem::path folder = folder_ / "out" / "as_planned";
   const auto expect_refused = [&](const char* name, const char* says) {
-    try {
-      write();
-      FAIL() << name;
-    } catch (const DataError& error) {
-      EXPECT_EQ(error.path(), folder / name);
-      EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find("Remove the folder"), std::string::npos) << error.what();
-    }
+    const auto error = testing::error_of<DataError>(write);
+    ASSERT_TRUE(error) << name;
+    EXPECT_EQ(error->path(), folder / name);
+    EXPECT_THAT(error->what(), ::testing::AllOf(::testing::HasSubstr(says), ::testing::HasSubstr("Remove the folder")));
   };
   for (const char* name : {"centerline.csv", "incision.json", "kerf.vtp"}) {
     const std::string sound = read_text(folder / name);

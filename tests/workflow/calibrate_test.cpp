@@ -1,5 +1,6 @@
 #include "support/counted_entries.hpp"
 #include "support/portable_kernels.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/workflow/calibrate.hpp>
@@ -300,12 +301,8 @@ TEST_F(CalibrateBlocks, RefusesAPathThatDoesNotGoRoundTheTumour) {
   for (Waypoint& waypoint : path.waypoints)
     waypoint.position_mm = Vec3(8, 8, 6) + 0.3 * (waypoint.position_mm - Vec3(16, 16, 6));
   first_.own_path = path;
-  try {
-    run({});
-    FAIL() << "expected a refusal";
-  } catch (const CaseError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("path: found a path that does not go round"));
-  }
+  EXPECT_THAT(testing::refusal_of<CaseError>([&] { return run({}); }),
+              HasSubstr("path: found a path that does not go round"));
 }
 
 TEST_F(CalibrateBlocks, LooksHalfWayToTheFirstFailureWhereTheAnswerMayLieThere) {

@@ -1,3 +1,5 @@
+#include "support/refusal.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/workflow/cut_doubts.hpp>
 #include <incise/workflow/margin_room.hpp>
@@ -52,14 +54,11 @@ TEST(RequireNoLocking, RefusesToCutTetsThatKeepTheirVolumeOneByOneAndNamesTheWay
   for (const double good : {0.45, 0.49, 0.495}) EXPECT_NO_THROW(require_no_locking(block(6, good))) << good;
   EXPECT_NO_THROW(require_no_locking(block(6, 0.4999, VolumeTreatment::Averaged)));
   for (const double bad : {0.4951, 0.499, 0.4999}) {
-    try {
-      require_no_locking(block(6, bad));
-      ADD_FAILURE() << bad << " was not refused";
-    } catch (const CaseError& error) {
-      EXPECT_EQ(error.field(), "specimen.material.volume");
-      EXPECT_THAT(error.what(),
-                  AllOf(HasSubstr("per_tet with a Poisson's ratio of 0.49"), HasSubstr("expected averaged")));
-    }
+    const auto error = testing::error_of<CaseError>([&] { require_no_locking(block(6, bad)); });
+    ASSERT_TRUE(error) << bad << " was not refused";
+    EXPECT_EQ(error->field(), "specimen.material.volume");
+    EXPECT_THAT(error->what(),
+                AllOf(HasSubstr("per_tet with a Poisson's ratio of 0.49"), HasSubstr("expected averaged")));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "support/block_inputs.hpp"
 #include "support/counted_entries.hpp"
 #include "support/portable_kernels.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
@@ -309,12 +310,8 @@ TEST(RunStudy, AMeshThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItIsStretched) 
   rlimit tight = old;
   tight.rlim_cur = data_bytes_in_use() + 100'000'000;
   ASSERT_EQ(setrlimit(RLIMIT_DATA, &tight), 0);
-  std::string said;
-  try {
-    static_cast<void>(run_study(settings, block, block.cache, {.until = Stage::Stretch}, workers, silent));
-  } catch (const DataError& error) {
-    said = error.what();
-  }
+  const std::string said = testing::refusal_of<DataError>(
+      [&] { return run_study(settings, block, block.cache, {.until = Stage::Stretch}, workers, silent); });
   ASSERT_EQ(setrlimit(RLIMIT_DATA, &old), 0);
   EXPECT_NE(said.find("this machine: memory: found "), std::string::npos) << said;
   EXPECT_NE(said.find("MB for 42840 tets"), std::string::npos) << said;
