@@ -1,4 +1,5 @@
 #include "geometry/pictures.hpp"
+#include "support/contour_shapes.hpp"
 
 #include <incise/core/random.hpp>
 #include <incise/geometry/gaussian.hpp>
@@ -12,17 +13,9 @@
 namespace incise {
 namespace {
 
+using testing::circle;
 using testing::drawn;
 const Vec3 kDown(0, 0, -1);
-
-Contour circle(double radius, std::size_t count) {
-  Contour contour;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
-    contour.points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.0);
-  }
-  return contour;
-}
 
 TEST(LongestPath, RunsThroughAForkByItsLongestBranches) {
   const std::optional<Contour> path =

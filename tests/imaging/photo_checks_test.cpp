@@ -23,13 +23,7 @@ std::string refusal(const Scene& s) {
 
 /// r = size (1 + a cos t): for a > 1 the curve crosses itself and has an inner loop.
 Contour limacon(double size, double a, const Vec3& crossing) {
-  Contour curve{.points = {}, .is_closed = true};
-  for (int i = 0; i < 1200; ++i) {
-    const double t = 2.0 * std::numbers::pi * i / 1200.0;
-    const double r = size * (1.0 + a * std::cos(t));
-    curve.points.emplace_back(crossing + Vec3(r * std::cos(t), r * std::sin(t), 0.0));
-  }
-  return curve;
+  return testing::polar_ring([&](double t) { return size * (1.0 + a * std::cos(t)); }, 1200, crossing);
 }
 
 /// The ring with a turn of a smaller circle in it, outside of it or inside.

@@ -40,6 +40,14 @@ inline TissueModel clamped_block(std::array<int, 3> cells = {4, 3, 3}, double nu
   return make_tissue_model(irregular_block(Vec3(20, 12, 9), cells, 0.2, 7), material, {FixedConstraint{plane_x(0.0)}});
 }
 
+/// A tet with no two edges alike, whose corners are all held.
+inline TissueModel one_tet(const Material& material) {
+  TetMesh mesh;
+  mesh.vertices = {Vec3(0, 0, 0), Vec3(2, 0.1, 0.2), Vec3(0.3, 1.5, -0.1), Vec3(0.2, 0.4, 1.8)};
+  mesh.tets = {{VertexId{0}, VertexId{1}, VertexId{2}, VertexId{3}}};
+  return make_tissue_model(mesh, material, {FixedConstraint{SphereRegion{Vec3::Zero(), 10.0}}});
+}
+
 inline Mat3 some_rotation(double angle = 2.0) {
   return Eigen::AngleAxisd(angle, Vec3(1.0, 2.0, -2.0) / 3.0).toRotationMatrix();
 }
@@ -60,6 +68,27 @@ inline Points elastic_forces(const TissueModel& model, TissueState& state, Block
   Points forces(model.mesh.vertices.size(), Vec3::Zero());
   add_elastic_response(model, state, forces, stiffness, workers);
   return forces;
+}
+
+/// Stiffness by central differences, at a step of `step` mm, of the forces that `forces(state)` returns.
+template <class Forces>
+Eigen::MatrixXd force_differences(const TissueState& start, double step, const Forces& forces) {
+  const auto n = static_cast<Eigen::Index>(3 * start.positions.size());
+  Eigen::MatrixXd result(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    TissueState state = start;
+    double& x = state.positions[static_cast<std::size_t>(j / 3)][j % 3];
+    const double at = x;
+    x = at + step;
+    const Points above = forces(state);
+    x = at - step;
+    const Points below = forces(state);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto v = static_cast<std::size_t>(i / 3);
+      result(i, j) = -(above[v][i % 3] - below[v][i % 3]) / (2.0 * step);
+    }
+  }
+  return result;
 }
 
 inline double norm(std::span<const Vec3> vectors) {

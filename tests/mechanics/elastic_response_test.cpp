@@ -25,32 +25,13 @@ constexpr double kDifferenceTolerance = 1e-6;
 constexpr double kRounding = 1e-12;
 
 TissueModel one_tet(double nu = 0.45) {
-  TetMesh mesh;
-  mesh.vertices = {Vec3(0, 0, 0), Vec3(2, 0.1, 0.2), Vec3(0.3, 1.5, -0.1), Vec3(0.2, 0.4, 1.8)};
-  mesh.tets = {{VertexId{0}, VertexId{1}, VertexId{2}, VertexId{3}}};
   Material material;
   material.poissons_ratio = nu;
-  return make_tissue_model(mesh, material, {FixedConstraint{SphereRegion{Vec3::Zero(), 10.0}}});
+  return testing::one_tet(material);
 }
 
-/// Stiffness by central differences of the forces.
 Eigen::MatrixXd force_differences(const TissueModel& model, const TissueState& start) {
-  const auto n = static_cast<Eigen::Index>(3 * start.positions.size());
-  Eigen::MatrixXd result(n, n);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    TissueState state = start;
-    double& x = state.positions[static_cast<std::size_t>(j / 3)][j % 3];
-    const double at = x;
-    x = at + kStep;
-    const Points above = elastic_forces(model, state);
-    x = at - kStep;
-    const Points below = elastic_forces(model, state);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const auto v = static_cast<std::size_t>(i / 3);
-      result(i, j) = -(above[v][i % 3] - below[v][i % 3]) / (2.0 * kStep);
-    }
-  }
-  return result;
+  return testing::force_differences(start, kStep, [&](TissueState& state) { return elastic_forces(model, state); });
 }
 
 TEST(ElasticForce, PushesAMirroredTetBackThroughItsThinnestDirection) {

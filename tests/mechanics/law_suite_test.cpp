@@ -59,12 +59,7 @@ class EveryLaw : public ::testing::TestWithParam<LawCase> {
     return make_tissue_model(irregular_block(kSize, cells, 0.2, 7), material_of(GetParam()),
                              {FixedConstraint{plane_x(0.0)}});
   }
-  [[nodiscard]] static TissueModel one_tet() {
-    TetMesh mesh;
-    mesh.vertices = {Vec3(0, 0, 0), Vec3(2, 0.1, 0.2), Vec3(0.3, 1.5, -0.1), Vec3(0.2, 0.4, 1.8)};
-    mesh.tets = {{VertexId{0}, VertexId{1}, VertexId{2}, VertexId{3}}};
-    return make_tissue_model(mesh, material_of(GetParam()), {FixedConstraint{SphereRegion{Vec3::Zero(), 10.0}}});
-  }
+  [[nodiscard]] static TissueModel one_tet() { return testing::one_tet(material_of(GetParam())); }
 
   /// Shaken, after a first step to another shaken place: viscous tissue then remembers something.
   [[nodiscard]] static TissueState shaken(const TissueModel& model, double amount, std::uint64_t seed) {
@@ -113,22 +108,7 @@ class EveryLaw : public ::testing::TestWithParam<LawCase> {
     return gradient;
   }
   [[nodiscard]] static Eigen::MatrixXd force_differences(const TissueModel& model, const TissueState& start) {
-    const auto n = static_cast<Eigen::Index>(3 * start.positions.size());
-    Eigen::MatrixXd result(n, n);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      TissueState state = start;
-      double& x = state.positions[static_cast<std::size_t>(j / 3)][j % 3];
-      const double at = x;
-      x = at + kStep;
-      const Points above = forces(model, state);
-      x = at - kStep;
-      const Points below = forces(model, state);
-      for (Eigen::Index i = 0; i < n; ++i) {
-        const auto v = static_cast<std::size_t>(i / 3);
-        result(i, j) = -(above[v][i % 3] - below[v][i % 3]) / (2.0 * kStep);
-      }
-    }
-    return result;
+    return testing::force_differences(start, kStep, [&](TissueState& state) { return forces(model, state); });
   }
 };
 

@@ -39,12 +39,20 @@ struct System {
 };
 
 PcgReport solve_pcg(const System& system, Points& x, const PcgSettings& settings, int per_aggregate = 20,
-                    int threads = 1) {
+                    int threads = 1, Precision precision = Precision::Double) {
   Workers workers(threads);
-  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, per_aggregate);
+  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, per_aggregate, precision);
   solver.update(system.matrix, true, workers);
   x.assign(system.right.size(), Vec3::Ones());
   return solver.solve(system.matrix, system.right, x, settings, workers);
+}
+
+Points by_cholesky(const System& system) {
+  SparseCholesky cholesky(system.model.pattern);
+  EXPECT_TRUE(cholesky.factor(system.matrix));
+  Points x(system.right.size());
+  cholesky.solve(system.right, x);
+  return x;
 }
 
 double difference(const Points& a, const Points& b) {
@@ -55,10 +63,7 @@ double difference(const Points& a, const Points& b) {
 
 TEST(SparseCholesky, SolvesToRounding) {
   const System system(clamped_block({6, 4, 4}, 0.49));
-  SparseCholesky cholesky(system.model.pattern);
-  ASSERT_TRUE(cholesky.factor(system.matrix));
-  Points x(system.right.size());
-  cholesky.solve(system.right, x);
+  const Points x = by_cholesky(system);
   EXPECT_LT(system.residual(x), 1e-10 * norm(system.right));
 }
 
@@ -87,13 +92,9 @@ TEST(SparseCholesky, RefusesToSolveWithoutAFactor) {
 
 TEST(TwoLevelPcg, FindsTheSolutionOfCholesky) {
   const System system(clamped_block({6, 4, 4}, 0.49));
-  SparseCholesky cholesky(system.model.pattern);
-  ASSERT_TRUE(cholesky.factor(system.matrix));
-  Points direct(system.right.size());
-  cholesky.solve(system.right, direct);
+  const Points direct = by_cholesky(system);
   Points iterated;
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-11;
+  const PcgSettings settings{.relative_tolerance = 1e-11};
   const PcgReport report = solve_pcg(system, iterated, settings);
   EXPECT_TRUE(report.converged);
   EXPECT_LT(difference(iterated, direct), 1e-8 * norm(direct));
@@ -102,10 +103,8 @@ TEST(TwoLevelPcg, FindsTheSolutionOfCholesky) {
 TEST(TwoLevelPcg, StopsAtTheResidualThatWasAskedFor) {
   const System system(clamped_block({6, 4, 4}));
   for (const double tolerance : {1e-1, 1e-3, 1e-6}) {
-    PcgSettings settings;
-    settings.relative_tolerance = tolerance;
     Points x;
-    const PcgReport report = solve_pcg(system, x, settings);
+    const PcgReport report = solve_pcg(system, x, {.relative_tolerance = tolerance});
     EXPECT_TRUE(report.converged);
     EXPECT_LE(report.residual_mn, tolerance * norm(system.right));
     EXPECT_NEAR(system.residual(x), report.residual_mn, 1e-9 * norm(system.right));
@@ -115,9 +114,7 @@ TEST(TwoLevelPcg, StopsAtTheResidualThatWasAskedFor) {
 TEST(TwoLevelPcg, MeasuresAgainstTheReferenceOrItsFloor) {
   const System system(clamped_block({6, 4, 4}));
   Points x;
-  PcgSettings settings;
-  settings.relative_tolerance = 0.1;
-  settings.reference_mn = 1e-3;
+  PcgSettings settings{.relative_tolerance = 0.1, .reference_mn = 1e-3};
   EXPECT_LE(solve_pcg(system, x, settings).residual_mn, 1e-4);
   settings.floor_mn = 1e6;
   EXPECT_EQ(solve_pcg(system, x, settings).iterations, 0);
@@ -126,19 +123,15 @@ TEST(TwoLevelPcg, MeasuresAgainstTheReferenceOrItsFloor) {
 
 TEST(TwoLevelPcg, SaysWhenItRanOutOfIterations) {
   const System system(clamped_block({6, 4, 4}));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-10;
-  settings.max_iterations = 3;
   Points x;
-  const PcgReport report = solve_pcg(system, x, settings);
+  const PcgReport report = solve_pcg(system, x, {.relative_tolerance = 1e-10, .max_iterations = 3});
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(report.iterations, 3);
 }
 
 TEST(TwoLevelPcg, NeedsFewerIterationsWithMoreAggregates) {
   const System system(clamped_block({24, 8, 6}));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-6;
+  const PcgSettings settings{.relative_tolerance = 1e-6};
   Points x;
   const int without = solve_pcg(system, x, settings, 1000000).iterations;
   const int with = solve_pcg(system, x, settings, 60).iterations;
@@ -148,8 +141,7 @@ TEST(TwoLevelPcg, NeedsFewerIterationsWithMoreAggregates) {
 /// 1485 vertices: 186 aggregates of 8 vertices have a dense coarse inverse, 213 of 7 a cycle over three levels.
 TEST(TwoLevelPcg, IsNearlyAsGoodWithThreeLevelsAsWithADenseInverse) {
   const System system(clamped_block({14, 10, 8}, 0.49));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-4;
+  const PcgSettings settings{.relative_tolerance = 1e-4};
   Points x;
   const int dense = solve_pcg(system, x, settings, 8).iterations;
   const int cycle = solve_pcg(system, x, settings, 7).iterations;
@@ -158,12 +150,8 @@ TEST(TwoLevelPcg, IsNearlyAsGoodWithThreeLevelsAsWithADenseInverse) {
 
 TEST(TwoLevelPcg, FindsTheSolutionOfCholeskyWithThreeLevels) {
   const System system(clamped_block({14, 10, 8}));
-  SparseCholesky cholesky(system.model.pattern);
-  ASSERT_TRUE(cholesky.factor(system.matrix));
-  Points direct(system.right.size());
-  cholesky.solve(system.right, direct);
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-10;
+  const Points direct = by_cholesky(system);
+  const PcgSettings settings{.relative_tolerance = 1e-10};
   for (const int per_aggregate : {1, 3}) {  // single vertices cannot turn; 1485 and 495 aggregates
     Points iterated;
     EXPECT_TRUE(solve_pcg(system, iterated, settings, per_aggregate).converged) << per_aggregate;
@@ -173,8 +161,7 @@ TEST(TwoLevelPcg, FindsTheSolutionOfCholeskyWithThreeLevels) {
 
 TEST(TwoLevelPcg, WithThreeLevelsGivesTheSameBitsAtAnyThreadCount) {
   const System system(clamped_block({14, 10, 8}));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-4;
+  const PcgSettings settings{.relative_tolerance = 1e-4};
   Points one;
   Points three;
   const int iterations = solve_pcg(system, one, settings, 5, 1).iterations;
@@ -187,8 +174,7 @@ TEST(TwoLevelPcg, CopesWithAggregatesThatAreHeldAltogetherOrInPart) {
   const Region edge = BoxRegion{Box3(Vec3(7.6, -1, -1), Vec3(21, 0.1, 10))};
   const System system(make_tissue_model(make_block(Vec3(20, 12, 9), {8, 4, 3}), {},
                                         {FixedConstraint{half}, FixedConstraint{edge, {false, true, false}}}));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-10;
+  const PcgSettings settings{.relative_tolerance = 1e-10};
   for (const int per_aggregate : {1, 3, 10, 40}) {
     Points x;
     EXPECT_TRUE(solve_pcg(system, x, settings, per_aggregate).converged) << per_aggregate;
@@ -212,8 +198,7 @@ TEST(TwoLevelPcg, StaysRightWhileItsCoarsePartIsStale) {
   elastic_forces(carved.model, state, &carved.matrix);
   hold_constrained(carved.model, carved.matrix, carved.right);
   solver.update(carved.matrix, false, workers);
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-8;
+  const PcgSettings settings{.relative_tolerance = 1e-8};
   Points x(carved.right.size());
   EXPECT_TRUE(solver.solve(carved.matrix, carved.right, x, settings, workers).converged);
   EXPECT_LT(carved.residual(x), 1e-7 * norm(carved.right));
@@ -221,8 +206,7 @@ TEST(TwoLevelPcg, StaysRightWhileItsCoarsePartIsStale) {
 
 TEST(TwoLevelPcg, GivesTheSameBitsAtAnyThreadCount) {
   const System system(clamped_block({14, 10, 8}));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-4;
+  const PcgSettings settings{.relative_tolerance = 1e-4};
   Points one;
   const PcgReport report = solve_pcg(system, one, settings, 40, 1);
   for (const int threads : {2, 4}) {
@@ -234,21 +218,12 @@ TEST(TwoLevelPcg, GivesTheSameBitsAtAnyThreadCount) {
 
 PcgReport solve_in_single_precision(const System& system, Points& x, double tolerance, int threads,
                                     int per_aggregate = 20) {
-  Workers workers(threads);
-  TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, per_aggregate, Precision::Single);
-  solver.update(system.matrix, true, workers);
-  PcgSettings settings;
-  settings.relative_tolerance = tolerance;
-  x.assign(system.right.size(), Vec3::Ones());
-  return solver.solve(system.matrix, system.right, x, settings, workers);
+  return solve_pcg(system, x, {.relative_tolerance = tolerance}, per_aggregate, threads, Precision::Single);
 }
 
 TEST(TwoLevelPcg, InSinglePrecisionFindsTheSolutionOfCholesky) {
   const System system(clamped_block({8, 5, 4}, 0.49));
-  SparseCholesky cholesky(system.model.pattern);
-  ASSERT_TRUE(cholesky.factor(system.matrix));
-  Points exact(system.right.size());
-  cholesky.solve(system.right, exact);
+  const Points exact = by_cholesky(system);
   Points x;
   const PcgReport report = solve_in_single_precision(system, x, 1e-4, 1);
   EXPECT_TRUE(report.converged);
@@ -284,8 +259,7 @@ TEST(TwoLevelPcg, InSinglePrecisionRefusesAMatrixWhoseNumbersProveItIndefinite) 
 
 TEST(TwoLevelPcg, InSinglePrecisionTakesAsManyIterationsAsInDouble) {
   const System system(clamped_block({8, 5, 4}, 0.49));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-2;
+  const PcgSettings settings{.relative_tolerance = 1e-2};
   Points x;
   Points y;
   const int in_double = solve_pcg(system, x, settings).iterations;
@@ -295,8 +269,7 @@ TEST(TwoLevelPcg, InSinglePrecisionTakesAsManyIterationsAsInDouble) {
 
 TEST(TwoLevelPcg, InSinglePrecisionTakesAsManyIterationsAsInDoubleWithThreeLevels) {
   const System system(clamped_block({14, 10, 8}, 0.49));
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-2;
+  const PcgSettings settings{.relative_tolerance = 1e-2};
   Points x;
   Points y;
   const int in_double = solve_pcg(system, x, settings, 5).iterations;
@@ -307,8 +280,7 @@ TEST(TwoLevelPcg, InSinglePrecisionTakesAsManyIterationsAsInDoubleWithThreeLevel
 TEST(TwoLevelPcg, TakesTheRowsThatChanged) {
   System system(clamped_block({6, 4, 4}));
   Workers workers(1);
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-4;
+  const PcgSettings settings{.relative_tolerance = 1e-4};
   for (const Precision precision : {Precision::Double, Precision::Single}) {
     TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, 20, precision);
     solver.update(system.matrix, true, workers);
@@ -346,9 +318,7 @@ struct Chain {
 Chain solve_chain(const System& system, const std::vector<Points>& right_sides, bool renews, int threads = 1) {
   Workers workers(threads);
   TwoLevelPcg solver(system.model.pattern, system.model.mesh.vertices, 20, Precision::Single);
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-2;
-  settings.starts_from_last = true;
+  const PcgSettings settings{.relative_tolerance = 1e-2, .starts_from_last = true};
   Chain chain;
   for (const Points& right : right_sides) {
     solver.update(system.matrix, renews, workers);

@@ -1,3 +1,4 @@
+#include "support/contour_shapes.hpp"
 #include "support/counted_entries.hpp"
 #include "support/portable_kernels.hpp"
 #include "support/refusal.hpp"
@@ -30,13 +31,10 @@ class SoftBlock : public Inputs {
   CtVolume read_ct(Monitor&) override { throw std::logic_error("this specimen comes as a mesh"); }
   std::optional<TetMesh> read_specimen_mesh(Monitor&) override { return make_block({32, 32, 6}, {24, 24, 4}); }
   std::optional<Contour> read_tumor_edge() override {
-    Contour edge;
-    for (int i = 0; i < 72; ++i) {
-      const double a = 2.0 * M_PI * i / 72.0;
-      const double r = kTumorRadiusMm * (1.0 + 0.12 * std::cos(2.0 * a + phase_) + 0.05 * std::sin(3.0 * a));
-      edge.points.emplace_back(16.0 + r * std::cos(a), 16.0 + r * std::sin(a), 6.0);
-    }
-    return edge;
+    const auto radius = [this](double a) {
+      return kTumorRadiusMm * (1.0 + 0.12 * std::cos(2.0 * a + phase_) + 0.05 * std::sin(3.0 * a));
+    };
+    return testing::polar_ring(radius, 72, Vec3(16, 16, 6));
   }
 
  private:
@@ -450,13 +448,8 @@ class LopsidedBlock : public SoftBlock {
  public:
   LopsidedBlock() : SoftBlock(0.0) {}
   std::optional<Contour> read_tumor_edge() override {
-    Contour edge;
-    for (int i = 0; i < 72; ++i) {
-      const double a = 2.0 * M_PI * i / 72.0;
-      const double r = 4.0 + 1.1 * std::cos(2.0 * a) + 1.3 * std::sin(3.0 * a + 0.9);
-      edge.points.emplace_back(16.0 + r * std::cos(a), 16.0 + r * std::sin(a), 6.0);
-    }
-    return edge;
+    const auto radius = [](double a) { return 4.0 + 1.1 * std::cos(2.0 * a) + 1.3 * std::sin(3.0 * a + 0.9); };
+    return testing::polar_ring(radius, 72, Vec3(16, 16, 6));
   }
 };
 

@@ -1,3 +1,5 @@
+#include "support/contour_shapes.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
 #include <incise/geometry/contour.hpp>
@@ -22,12 +24,7 @@ std::vector<std::string> ids_of(const Verdict& verdict) {
 }
 
 Contour circle(double radius_mm, const Vec3& center = Vec3::Zero()) {
-  Contour contour;
-  for (int i = 0; i < 120; ++i) {
-    const double angle = 2.0 * units::kPi * i / 120.0;
-    contour.points.push_back(center + radius_mm * Vec3(std::cos(angle), std::sin(angle), 0.0));
-  }
-  return contour;
+  return testing::circle(radius_mm, 120, center);
 }
 
 /// A ring at its intended place round a tumour of 20 mm, sound in every respect.

@@ -27,19 +27,8 @@ class AssessedBlock : public testing::BlockInputs {
 };
 
 Case case_under_the_arm() {
-  Case settings;
+  Case settings = testing::coarse_case();
   settings.is_virtual = true;
-  settings.gravity_mm_s2 = Vec3::Zero();
-  settings.constraints = std::vector<Constraint>{
-      FixedConstraint{EndRegion{Vec3::UnitY(), 4.0}},
-      DisplacedConstraint{EndRegion{-Vec3::UnitY(), 4.0}, Vec3(0.0, -5.0, 0.0)},
-      FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(45, 51, 0.1))}, {false, false, true}}};
-  settings.tool = Needle{.diameter_mm = 1.6};
-  settings.cut.reach_mm = 0.4;
-  settings.cut.advance_per_step_mm = 0.8;
-  settings.cut.dullness = 9.0;
-  settings.cut.bond_stiffness_kpa_mm2 = 100.0;
-  settings.frames = 0;
   Mat4 T_robot_sim = Mat4::Identity();
   T_robot_sim.topRightCorner<3, 1>() = Vec3(550.0, 0.0, 200.0);
   settings.T_robot_sim = T_robot_sim;

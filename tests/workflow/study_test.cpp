@@ -22,29 +22,14 @@
 namespace incise {
 namespace {
 
+using testing::coarse_case;
+
 /// A block of tissue, a round tumour edge on it, and what a run keeps of it.
 class Block : public testing::BlockInputs {
  public:
   testing::Entries kept;
   Cache cache{std::make_unique<testing::CountedEntries>(kept)};
 };
-
-/// The paper's loop on a coarse block: a thick needle, so that a quarter of a minute is enough.
-Case coarse_case() {
-  Case settings;
-  settings.gravity_mm_s2 = Vec3::Zero();
-  settings.constraints = std::vector<Constraint>{
-      FixedConstraint{EndRegion{Vec3::UnitY(), 4.0}},
-      DisplacedConstraint{EndRegion{-Vec3::UnitY(), 4.0}, Vec3(0.0, -5.0, 0.0)},
-      FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(45, 51, 0.1))}, {false, false, true}}};
-  settings.tool = Needle{.diameter_mm = 1.6};
-  settings.cut.reach_mm = 0.4;
-  settings.cut.advance_per_step_mm = 0.8;
-  settings.cut.dullness = 9.0;
-  settings.cut.bond_stiffness_kpa_mm2 = 100.0;
-  settings.frames = 0;
-  return settings;
-}
 
 /// Collects what is said.
 class Warnings : public Monitor {
@@ -55,15 +40,37 @@ class Warnings : public Monitor {
   std::string all;
 };
 
-TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
-  Block block;
+/// Runs of the block with one cache.
+class RunStudy : public ::testing::Test {
+ protected:
+  Study run(const Case& settings, const RunOptions& options = {}) {
+    Workers workers(2);
+    return run_study(settings, block_, block_.cache, options, workers, silent_);
+  }
+
+  /// Which stages of a run of the changed case are computed again.
+  std::string computed_again(Stage until, const std::function<void(Case&)>& change) {
+    Case settings = coarse_case();
+    change(settings);
+    std::string again;
+    for (const StageReport& stage : run(settings, {.until = until}).stages) {
+      if (stage.state == StageState::Computed) again += std::string(to_string(stage.stage)) + " ";
+    }
+    return again;
+  }
+
+  Block block_;
+  Monitor silent_;
+};
+
+TEST_F(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
   Workers workers(2);
   Warnings warnings;
   Case settings = coarse_case();
   settings.plan.power_w = 90.0;
   settings.cut.power_exponent = 0.0;  // power does nothing but heat
   settings.compensation.method = CompensationMethod::Paper;
-  const Study study = run_study(settings, block, block.cache, {}, workers, warnings);
+  const Study study = run_study(settings, block_, block_.cache, {}, workers, warnings);
   EXPECT_NE(warnings.all.find("the mesh is coarse for a tool of 1.6 mm"), std::string::npos) << warnings.all;
   for (const char* cut : {"the cut as planned: caution: heat: heat reaches", "the corrected cut: caution: heat: heat reaches"}) {
     EXPECT_NE(warnings.all.find(cut), std::string::npos) << warnings.all;
@@ -77,28 +84,25 @@ TEST(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
   EXPECT_LT(after, 0.5 * before);
 }
 
-TEST(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
+TEST_F(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
   const testing::PortableKernels portable;
-  Block block;
-  Workers workers(2);
-  Monitor silent;
-  const Study study = run_study(coarse_case(), block, block.cache, {}, workers, silent);
+  const Study study = run(coarse_case());
   ASSERT_TRUE(study.corrected && study.correction && study.correction->iteration);
   const ConvergedCompensation& done = *study.correction->iteration;
   EXPECT_LE(done.passes.size(), 4U);
   // The cuts on the way are let go; the one that the correction ended with is kept.
-  EXPECT_TRUE(block.kept.bytes.contains("as_planned") && block.kept.bytes.contains("corrected"));
-  EXPECT_FALSE(block.kept.bytes.contains("pass_1") || block.kept.bytes.contains("pass_2"));
+  EXPECT_TRUE(block_.kept.bytes.contains("as_planned") && block_.kept.bytes.contains("corrected"));
+  EXPECT_FALSE(block_.kept.bytes.contains("pass_1") || block_.kept.bytes.contains("pass_2"));
   EXPECT_NEAR(*done.result().mean_abs_error_mm, study.corrected->centerline.abs_error_mm->mean, 1e-12);
   EXPECT_LT(study.corrected->centerline.abs_error_mm->mean, 0.5 * study.as_planned->centerline.abs_error_mm->mean);
   ASSERT_TRUE(study.correction->floor_mm);
   EXPECT_LT(*study.correction->floor_mm, study.corrected->centerline.abs_error_mm->mean + 0.05);
 
   // A second run makes none of it again.
-  const int saved = block.kept.saved;
-  const Study again = run_study(coarse_case(), block, block.cache, {}, workers, silent);
+  const int saved = block_.kept.saved;
+  const Study again = run(coarse_case());
   EXPECT_EQ(again.stages.back().state, StageState::Reused);
-  EXPECT_EQ(block.kept.saved, saved);
+  EXPECT_EQ(block_.kept.saved, saved);
   EXPECT_EQ(bytes_of(again.corrected->incision), bytes_of(study.corrected->incision))
       << "what is loaded equals what was computed";
   EXPECT_EQ(bytes_of(*again.correction), bytes_of(*study.correction));
@@ -108,18 +112,15 @@ TEST(RunStudy, TheDefaultMethodCutsAtMostFourTimesAndEndsWithOneOfThoseCuts) {
   EXPECT_EQ(again.is_accepted, study.is_accepted);
 }
 
-TEST(RunStudy, ACutByPointsThatSplitsTetsIsLoadedAsItWasComputed) {
-  Block block;
-  Workers workers(2);
-  Monitor silent;
+TEST_F(RunStudy, ACutByPointsThatSplitsTetsIsLoadedAsItWasComputed) {
   Case settings = coarse_case();
   settings.frames = 3;
   settings.cut.rule = CutRule::Lattice;
   settings.cut.dullness = 4.0;
-  const Study study = run_study(settings, block, block.cache, {.until = Stage::Simulate}, workers, silent);
+  const Study study = run(settings, {.until = Stage::Simulate});
   ASSERT_FALSE(study.as_planned->incision.final_state.splits.vertices.empty());
   EXPECT_TRUE(study.as_planned->incision.inner_edge.has_value());
-  const Study again = run_study(settings, block, block.cache, {.until = Stage::Simulate}, workers, silent);
+  const Study again = run(settings, {.until = Stage::Simulate});
   EXPECT_EQ(again.stages.back().state, StageState::Reused);
   EXPECT_EQ(bytes_of(again.as_planned->incision), bytes_of(study.as_planned->incision));
 }
@@ -224,12 +225,9 @@ TEST(IncisionSettings, OfViscousTissueHaveThePaceOfTheRealToolAndTheTimeSinceThe
   EXPECT_EQ(incision_settings_for(settings, path, {}).time_since_stretch_s, 90.0);
 }
 
-TEST(RunStudy, ASecondRunTakesEveryProductFromTheCache) {
-  Block block;
-  Workers workers(2);
-  Monitor silent;
-  static_cast<void>(run_study(coarse_case(), block, block.cache, {.until = Stage::Plan}, workers, silent));
-  const Study again = run_study(coarse_case(), block, block.cache, {.until = Stage::Plan}, workers, silent);
+TEST_F(RunStudy, ASecondRunTakesEveryProductFromTheCache) {
+  run(coarse_case(), {.until = Stage::Plan});
+  const Study again = run(coarse_case(), {.until = Stage::Plan});
   ASSERT_EQ(again.stages.size(), 4U);
   EXPECT_EQ(again.stages[0].state, StageState::Skipped);
   EXPECT_EQ(again.stages[1].state, StageState::Skipped);
@@ -237,23 +235,9 @@ TEST(RunStudy, ASecondRunTakesEveryProductFromTheCache) {
   EXPECT_EQ(again.stages[3].state, StageState::Reused);
 }
 
-/// Which stages of a run of the changed case are computed again.
-std::string computed_again(Block& block, Stage until, const std::function<void(Case&)>& change) {
-  Case settings = coarse_case();
-  change(settings);
-  Workers workers(2);
-  Monitor silent;
-  std::string again;
-  for (const StageReport& stage : run_study(settings, block, block.cache, {.until = until}, workers, silent).stages) {
-    if (stage.state == StageState::Computed) again += std::string(to_string(stage.stage)) + " ";
-  }
-  return again;
-}
-
-TEST(RunStudy, AStageIsComputedAgainForWhatItReadsAndForNothingElse) {
-  Block block;
-  EXPECT_EQ(computed_again(block, Stage::Simulate, [](Case&) {}), "stretch plan simulate ");
-  EXPECT_EQ(computed_again(block, Stage::Simulate,
+TEST_F(RunStudy, AStageIsComputedAgainForWhatItReadsAndForNothingElse) {
+  EXPECT_EQ(computed_again(Stage::Simulate, [](Case&) {}), "stretch plan simulate ");
+  EXPECT_EQ(computed_again(Stage::Simulate,
                            [](Case& c) {
                              c.title = "Another name";
                              c.thermal.absorbed_fraction = 0.5;  // a cut is judged anew, not made anew
@@ -262,28 +246,21 @@ TEST(RunStudy, AStageIsComputedAgainForWhatItReadsAndForNothingElse) {
                              c.meshing.fine_mm = 0.5;  // the mesh is given
                            }),
             "");
-  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.plan.power_w = 30.0; }), "");
-  EXPECT_EQ(computed_again(block, Stage::Simulate, [](Case& c) { c.plan.power_w = 30.0; }), "simulate ");
-  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.plan.depth_mm = 4.0; }), "plan ");
-  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.cut.dullness = 4.0; }), "plan ")
+  EXPECT_EQ(computed_again(Stage::Plan, [](Case& c) { c.plan.power_w = 30.0; }), "");
+  EXPECT_EQ(computed_again(Stage::Simulate, [](Case& c) { c.plan.power_w = 30.0; }), "simulate ");
+  EXPECT_EQ(computed_again(Stage::Plan, [](Case& c) { c.plan.depth_mm = 4.0; }), "plan ");
+  EXPECT_EQ(computed_again(Stage::Plan, [](Case& c) { c.cut.dullness = 4.0; }), "plan ")
       << "the plan of 4 mm took its place";
-  EXPECT_EQ(computed_again(block, Stage::Plan, [](Case& c) { c.material.youngs_modulus_kpa = 60.0; }), "stretch plan ");
+  EXPECT_EQ(computed_again(Stage::Plan, [](Case& c) { c.material.youngs_modulus_kpa = 60.0; }), "stretch plan ");
 }
 
-TEST(RunStudy, ThatHasToGoOnRefusesWhereNothingWasInterrupted) {
-  Block block;
-  Workers workers(2);
-  Monitor silent;
-  EXPECT_THROW(static_cast<void>(run_study(coarse_case(), block, block.cache, {.must_resume = true}, workers, silent)),
-               CaseError);
-  EXPECT_TRUE(block.kept.bytes.empty()) << "nothing was computed";
+TEST_F(RunStudy, ThatHasToGoOnRefusesWhereNothingWasInterrupted) {
+  EXPECT_THROW(run(coarse_case(), {.must_resume = true}), CaseError);
+  EXPECT_TRUE(block_.kept.bytes.empty()) << "nothing was computed";
 }
 
-TEST(RunStudy, StopsAfterTheStageThatWasAskedFor) {
-  Block block;
-  Workers workers(2);
-  Monitor silent;
-  const Study study = run_study(coarse_case(), block, block.cache, {.until = Stage::Stretch}, workers, silent);
+TEST_F(RunStudy, StopsAfterTheStageThatWasAskedFor) {
+  const Study study = run(coarse_case(), {.until = Stage::Stretch});
   EXPECT_TRUE(study.stretched.has_value());
   EXPECT_FALSE(study.plan.has_value());
   EXPECT_NEAR(study.stretched->max_displacement_mm, 5.0, 0.5);
@@ -298,24 +275,22 @@ rlim_t data_bytes_in_use() {
   return 0;
 }
 
-TEST(RunStudy, AMeshThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItIsStretched) {
+TEST_F(RunStudy, AMeshThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItIsStretched) {
   rlimit old{};
   ASSERT_EQ(getrlimit(RLIMIT_DATA, &old), 0);
   ASSERT_TRUE(available_memory_bytes().has_value());
   Case settings = coarse_case();
   settings.frames = 500;  // 125 MB of them, beside some 45 MB
-  Block block;
   Workers workers(1);
-  Monitor silent;
   rlimit tight = old;
   tight.rlim_cur = data_bytes_in_use() + 100'000'000;
   ASSERT_EQ(setrlimit(RLIMIT_DATA, &tight), 0);
   const std::string said = testing::refusal_of<DataError>(
-      [&] { return run_study(settings, block, block.cache, {.until = Stage::Stretch}, workers, silent); });
+      [&] { return run_study(settings, block_, block_.cache, {.until = Stage::Stretch}, workers, silent_); });
   ASSERT_EQ(setrlimit(RLIMIT_DATA, &old), 0);
   EXPECT_NE(said.find("this machine: memory: found "), std::string::npos) << said;
   EXPECT_NE(said.find("MB for 42840 tets"), std::string::npos) << said;
-  EXPECT_TRUE(block.kept.bytes.empty());
+  EXPECT_TRUE(block_.kept.bytes.empty());
 }
 
 TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {
@@ -341,12 +316,9 @@ Case case_by_photographs() {
   return settings;
 }
 
-TEST(RunStudy, ByAProfileMovesThePathWithoutAnySimulatedCutUntilItIsVerified) {
-  Block block;
-  Workers workers(2);
-  Monitor silent;
+TEST_F(RunStudy, ByAProfileMovesThePathWithoutAnySimulatedCutUntilItIsVerified) {
   Case settings = case_by_photographs();
-  const Study moved = run_study(settings, block, block.cache, {.until = Stage::Compensate}, workers, silent);
+  const Study moved = run(settings, {.until = Stage::Compensate});
   EXPECT_FALSE(moved.as_planned);
   ASSERT_TRUE(moved.correction && moved.plan);
   EXPECT_EQ(moved.correction->method, CompensationMethod::Profile);
@@ -356,18 +328,15 @@ TEST(RunStudy, ByAProfileMovesThePathWithoutAnySimulatedCutUntilItIsVerified) {
   EXPECT_EQ(moved.stages[4].stage, Stage::Simulate);
   EXPECT_EQ(moved.stages[4].state, StageState::Skipped);
 
-  const Study verified = run_study(settings, block, block.cache, {}, workers, silent);
+  const Study verified = run(settings);
   ASSERT_TRUE(verified.as_planned && verified.corrected);
   EXPECT_EQ(verified.correction->moves.move_mm, moved.correction->moves.move_mm) << "the same product";
 }
 
-TEST(RunStudy, JudgesEveryCutByWhatIsExpectedAlongThePlannedPath) {
-  Block block;
-  Workers workers(2);
-  Monitor silent;
+TEST_F(RunStudy, JudgesEveryCutByWhatIsExpectedAlongThePlannedPath) {
   Case settings = case_by_photographs();
   settings.close_margin_mm = 4.9;  // so that every cut is too near, and the verdict says how near
-  const Study study = run_study(settings, block, block.cache, {}, workers, silent);
+  const Study study = run(settings);
   ASSERT_TRUE(study.as_planned && study.corrected);
   const auto left_mm = [](const SimulatedCut& cut) {
     for (const VerdictReason& reason : cut.verdict.reasons())
@@ -379,16 +348,15 @@ TEST(RunStudy, JudgesEveryCutByWhatIsExpectedAlongThePlannedPath) {
       << "the path moved out by 0.8 mm, and its cut with it";
 }
 
-TEST(Correct, AddsTheProfileToTheBiasWaypointByWaypoint) {
-  Block block;
-  Workers workers(2);
-  Monitor silent;
+class Correct : public RunStudy {};
+
+TEST_F(Correct, AddsTheProfileToTheBiasWaypointByWaypoint) {
   Case settings = coarse_case();
   settings.compensation.bias_mm = 0.3;
-  const Study by_bias = run_study(settings, block, block.cache, {}, workers, silent);
+  const Study by_bias = run(settings);
   settings.compensation.bias_mm = 0.1;
   settings.compensation.residual_mm = {0.2};
-  const Study by_both = run_study(settings, block, block.cache, {}, workers, silent);
+  const Study by_both = run(settings);
   ASSERT_TRUE(by_bias.correction && by_both.correction);
   const std::vector<double>&one = by_bias.correction->moves.move_mm, &other = by_both.correction->moves.move_mm;
   ASSERT_EQ(one.size(), other.size());
