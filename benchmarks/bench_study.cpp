@@ -140,9 +140,7 @@ Row run(std::uint64_t seed, const Options& options) {
   row.pull_n = body.stretch_force_n;
   row.outcome = to_string(body.outcome);
   if (body.outcome == Outcome::NotConverged || options.given.at("draw_only") != 0.0) return row;
-  PlanSettings plan;
-  plan.speed_mm_s = options.given.at("speed_mm_s");
-  plan.power_w = options.given.at("power_w");
+  PlanSettings plan{.speed_mm_s = options.given.at("speed_mm_s"), .power_w = options.given.at("power_w")};
   row.cut = cut_as_planned(body, plan, workers, monitor);
   row.cut_s = cpu_s() - start - row.body_s;
   row.outcome = to_string(row.cut.outcome);

@@ -58,8 +58,7 @@ void print_row(const Size& size) {
   TetMesh mesh = make_block({kSideMm, kSideMm, kHeightMm}, size.cells);
   const std::size_t tets = mesh.tets.size();
   const std::uint64_t expected = expected_memory_bytes(mesh.vertices.size(), tets, size.volume, 0);
-  Material material;
-  material.volume = size.volume;
+  Material material{.volume = size.volume};
   const double before = peak_bytes();
   const TissueModel model =
       make_tissue_model(std::move(mesh), material,

@@ -236,8 +236,7 @@ Result study_meshes(Workers& workers) {
   const Phantom phantom = make_phantom(PhantomSettings{}, silent);
   std::vector<Body> bodies;
   for (const double edge : {1.0, 0.8, 0.6, 0.5}) {
-    MeshingChoice meshing;
-    meshing.fine_mm = edge;
+    MeshingChoice meshing{.fine_mm = edge};
     bodies.push_back(make_body(phantom, "seed 1", meshing, workers));
   }
   std::vector<Job> jobs;
@@ -266,14 +265,12 @@ Result study_law(Workers& workers, const Options& options) {
   Monitor silent;
   std::vector<Body> bodies;
   for (const double seed : options.seeds) {
-    PhantomSettings specimen;
-    specimen.seed = static_cast<std::uint64_t>(seed);
+    PhantomSettings specimen{.seed = static_cast<std::uint64_t>(seed)};
     const Phantom phantom = make_phantom(specimen, silent);
     for (const double modulus_kpa : options.moduli_kpa) {
       for (const double edge : options.edges_mm) {
         for (int mesh = 0; mesh < options.meshes; ++mesh) {
-          MeshingChoice meshing;
-          meshing.fine_mm = edge * (1.0 + 0.005 * mesh);
+          MeshingChoice meshing{.fine_mm = edge * (1.0 + 0.005 * mesh)};
           const Material material{.youngs_modulus_kpa = modulus_kpa, .poissons_ratio = 0.45};
           bodies.push_back(make_body(phantom, fmt::format("seed {} of {} kPa", specimen.seed, modulus_kpa), meshing,
                                      workers, material));
@@ -304,10 +301,8 @@ Result study_table(Workers& workers, const Options& options) {
   Monitor silent;
   std::vector<Body> bodies;
   for (std::uint64_t seed = 1; seed <= options.specimens; ++seed) {
-    PhantomSettings specimen;
-    specimen.seed = seed;
-    MeshingChoice meshing;
-    meshing.tets = 40000;
+    PhantomSettings specimen{.seed = seed};
+    MeshingChoice meshing{.tets = 40000};
     bodies.push_back(make_body(make_phantom(specimen, silent), fmt::format("seed {}", seed), meshing, workers));
   }
   std::vector<Job> jobs;

@@ -134,10 +134,7 @@ Size run_size(const Options& options, const Phantom& phantom, int tets, std::str
              study.model->mesh.tets.size(), study.model->mesh.vertices.size(), 1e-6 * peak_bytes(), to_string(active_isa()),
              length_mm(entry_contour(*study.plan)));
 
-  IncisionSettings incision;
-  incision.tool = settings.tool;
-  incision.approach = settings.plan.approach;
-  incision.cut = settings.cut;
+  IncisionSettings incision{.cut = settings.cut, .tool = settings.tool, .approach = settings.plan.approach};
   incision.cut.advance_per_step_mm = options.advance_mm;
   incision.cut.rule = options.rule;
   if (options.tolerance > 0.0) incision.cut.residual_tolerance = options.tolerance;

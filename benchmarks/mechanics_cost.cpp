@@ -89,9 +89,7 @@ Row in_own_process(const Work& work) {
 Row beam(int threads) {
   Workers workers(threads);
   constexpr int kSteps = 1000;
-  Material material;
-  material.youngs_modulus_kpa = 1000.0;
-  material.poissons_ratio = 0.3;
+  Material material{.youngs_modulus_kpa = 1000.0, .poissons_ratio = 0.3};
   material.density_kg_m3 = 0.2e9;  // 0.2 per unit of volume
   const TissueModel model = make_tissue_model(make_block({10, 40, 10}, {7, 25, 7}), material,
                                               {FixedConstraint{EndRegion{-Vec3::UnitY(), 0.1}}}, Vec3(0, 0, -9));

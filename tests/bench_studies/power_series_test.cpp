@@ -122,9 +122,7 @@ TEST(RunPowerSeries, ASpecimenThatIsNoneIsRefused) {
 
 TEST(ValidatePowerRequest, NamesEveryField) {
   EXPECT_TRUE(validate(PowerRequest{}).empty());
-  PowerRequest request;
-  request.powers_w = {35.0, 35.0};
-  request.speed_mm_s = 0.0;
+  PowerRequest request{.powers_w = {35.0, 35.0}, .speed_mm_s = 0.0};
   request.limits.bulge_limit_mm = -1.0;
   request.resolution.coarse_mm = 1.0;
   EXPECT_THAT(sentences(validate(request)),

@@ -196,8 +196,7 @@ TEST(Identifiability, SaysWhenTheIntervalEndsWhereTheSimulationsEnd) {
 TEST(FitDrag, RefusesSettingsAndProfilesThatDoNotFit) {
   Random random(1);
   std::vector<FitSpecimen> specimens = photographed({2.0, 0.0, 0.0}, random, 0.2);
-  DragFitSettings settings;
-  settings.bias_sd_mm = 0.0;
+  DragFitSettings settings{.bias_sd_mm = 0.0};
   EXPECT_THAT(sentences(problems_of(settings)), ::testing::ElementsAre(::testing::HasSubstr("bias_sd_mm")));
   EXPECT_THROW(static_cast<void>(fit_drag(specimens, settings)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(fit_drag({})), InvalidArgument);

@@ -67,8 +67,7 @@ std::vector<RingObservation> observations_of(const World& world, std::size_t cou
   Random random(11);
   std::vector<RingObservation> observations;
   for (std::size_t s = 0; s < count; ++s) {
-    RingObservation one;
-    one.ring = ring_at(random.uniform(-180.0, 180.0), random.uniform(3.0, 12.0));
+    RingObservation one{.ring = ring_at(random.uniform(-180.0, 180.0), random.uniform(3.0, 12.0))};
     one.ring.aside_mm = random.uniform(-6.0, 6.0);
     one.simulated_mm = simulated_mm(-1.0 + (s % 2 == 0 ? 0.3 : -0.3));
     one.photographed_mm = expected_mm(world, one.ring, one.simulated_mm);

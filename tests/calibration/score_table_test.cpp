@@ -19,8 +19,7 @@ CalibrationRun scored(double mean, double max, double inner_mean = 1.0, double i
 }
 
 CalibrationRun open_ring() {
-  CalibrationRun run;
-  run.outcome = Outcome::OpenLoop;
+  CalibrationRun run{.outcome = Outcome::OpenLoop};
   return run;
 }
 

@@ -62,11 +62,7 @@ void describe(Visitor& v, Whole& w) {
 }
 
 Whole example() {
-  Whole w;
-  w.is_on = true;
-  w.text = "tongue";
-  w.outcome = Outcome::Success;
-  w.place = Vec3(1.0, -2.5, 1.0 / 3.0);
+  Whole w{.is_on = true, .text = "tongue", .outcome = Outcome::Success, .place = Vec3(1.0, -2.5, 1.0 / 3.0)};
   w.transform(0, 3) = 7.0;
   w.three = {1.0, 2.0, 4.0};
   w.numbers = {0.1, 1e300};

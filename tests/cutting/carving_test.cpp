@@ -63,14 +63,12 @@ TEST_F(Carve, ATetTouchedForATenthOfAPercentMoreGoesAndOneForAPercentLessStaysAt
 }
 
 TEST_F(Carve, WhatIsRemovedAtRestDoesNotDependOnTheStep) {
-  CutSettings settings;
-  settings.bond_stiffness_kpa_mm2 = 0.0;
+  CutSettings settings{.bond_stiffness_kpa_mm2 = 0.0};
   EXPECT_EQ(removed(run(settings, 10.3, 10.3, 9, 0.02)), removed(run(settings, 10.3, 10.3, 36, 0.005)));
 }
 
 TEST_F(Carve, EveryTetThatIsRemovedWasWithinReachOfTheNeedle) {
-  CutSettings settings;
-  settings.bond_stiffness_kpa_mm2 = 0.0;
+  CutSettings settings{.bond_stiffness_kpa_mm2 = 0.0};
   const CutState state = run(settings, 10.3, 10.3, 10, 0.02);
   std::set<TetId> gone;
   for (const Removal& removal : state.record.removals) {
@@ -150,16 +148,13 @@ TEST_F(Carve, DragsHeldTissueAlongWithTheNeedle) {
 }
 
 TEST_F(Carve, WithoutBondsTheNeedleMovesNothing) {
-  CutSettings settings;
-  settings.bond_stiffness_kpa_mm2 = 0.0;
-  settings.dullness = 1000.0;
+  CutSettings settings{.dullness = 1000.0, .bond_stiffness_kpa_mm2 = 0.0};
   const CutState state = run(settings, 10.0, 10.8, 5, 0.02);
   EXPECT_EQ(state.tissue.positions, model_.mesh.vertices);
 }
 
 TEST_F(Carve, TissueReturnsWhenTheToolIsOut) {
-  CutSettings settings;
-  settings.dullness = 1000.0;
+  CutSettings settings{.dullness = 1000.0};
   Workers workers(1);
   CutState state = run(settings, 10.0, 10.8, 5, 0.02);
   CutWorkspace workspace(model_, state.tissue.positions);
@@ -216,8 +211,7 @@ TEST_F(Carve, OnlyTheTenderPartOfABodyOfTwoKindsIsCutAtOnce) {
     for (const VertexId v : t) middle += 0.25 * model_.mesh.vertices[v.index()].x();
     if (middle > 10.3) model_.toughness[tet] = 5.0;
   }
-  CutSettings settings;
-  settings.bond_stiffness_kpa_mm2 = 0.0;
+  CutSettings settings{.bond_stiffness_kpa_mm2 = 0.0};
   const CutState state = run(settings, 10.3, 10.3, 1, 2.0 * settings.dwell_s());
   EXPECT_GT(state.record.removals.size(), 10U);
   for (const Removal& removal : state.record.removals) {
@@ -238,24 +232,19 @@ TEST_F(Carve, HeldTissueTearsWhenTheToolWorksOnIt) {
 }
 
 TEST_F(Carve, WhereContactDoesMostOfTheDoseTheCauseIsDwell) {
-  CutSettings settings;
-  settings.tear_energy_kpa = 1e6;
+  CutSettings settings{.tear_energy_kpa = 1e6};
   const CutState state = run(settings, 10.0, 12.6, 10, 0.02);
   ASSERT_FALSE(state.record.removals.empty());
   for (const Removal& removal : state.record.removals) EXPECT_NE(removal.cause, RemovalCause::Tear);
 }
 
 TEST_F(Carve, TheWorkOfAToolThatStandsStillIsNothing) {
-  CutSettings settings;
-  settings.dullness = 1000.0;
-  settings.tear_energy_kpa = 1e-3;
+  CutSettings settings{.dullness = 1000.0, .tear_energy_kpa = 1e-3};
   EXPECT_TRUE(run(settings, 10.3, 10.3, 20, 0.02).record.removals.empty());
 }
 
 TEST_F(Carve, TissueThatSlipsStaysWithinTheSlipBehindTheTool) {
-  CutSettings settings;
-  settings.dullness = 1000.0;
-  settings.slip_mm = 0.1;
+  CutSettings settings{.dullness = 1000.0, .slip_mm = 0.1};
   Workers workers(1);
   CutState state = begin_cut(model_, rest_state(model_), standing_at(10.0));
   CutWorkspace workspace(model_, state.tissue.positions);
@@ -272,8 +261,7 @@ TEST_F(Carve, TissueThatSlipsStaysWithinTheSlipBehindTheTool) {
 }
 
 TEST_F(Carve, ASlipBoundsTheForceAndIsCounted) {
-  CutSettings settings;
-  settings.dullness = 1000.0;
+  CutSettings settings{.dullness = 1000.0};
   Workers workers(1);
   std::array<double, 2> peak{};
   std::size_t slipped = 0;
@@ -292,8 +280,7 @@ TEST_F(Carve, ASlipBoundsTheForceAndIsCounted) {
 }
 
 TEST_F(Carve, TheTissuePullsTheNeedleBackAndTurnsItAboutItsTip) {
-  CutSettings settings;
-  settings.dullness = 1000.0;
+  CutSettings settings{.dullness = 1000.0};
   Workers workers(1);
   CutState state = begin_cut(model_, rest_state(model_), standing_at(10.0));
   CutWorkspace workspace(model_, state.tissue.positions);
@@ -307,8 +294,7 @@ TEST_F(Carve, TheTissuePullsTheNeedleBackAndTurnsItAboutItsTip) {
 }
 
 TEST_F(Carve, ABallHoldsTissueAlsoAlongItsAxisAndANeedleDoesNot) {
-  CutSettings settings;
-  settings.dullness = 1000.0;
+  CutSettings settings{.dullness = 1000.0};
   Workers workers(1);
   for (const Tool& tool : {Tool{Ball{.diameter_mm = 1.5}}, Tool{Needle{}}}) {
     ToolPose pose = standing_at(10.3);

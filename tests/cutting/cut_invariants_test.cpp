@@ -30,8 +30,7 @@ const Cut& cut() {
     c.state = begin_cut(c.model, rest_state(c.model), at(3.2));
     Workers workers(1);
     CutWorkspace workspace(c.model, c.state.tissue.positions);
-    CutSettings settings;
-    settings.dullness = 4.0;
+    CutSettings settings{.dullness = 4.0};
     for (int i = 1; i <= 12; ++i) {
       static_cast<void>(advance(c.model, settings, Needle{}, c.state, workspace, at(3.2 + 0.25 * i),
                                 settings.reference_step_s, workers));

@@ -34,15 +34,13 @@ TEST(CutSettings, EveryViolationIsListedWithItsField) {
 }
 
 TEST(CutSettings, AStepLongerThanTheNeedleIsWideIsRefused) {
-  CutSettings settings;
-  settings.advance_per_step_mm = 1.01;
+  CutSettings settings{.advance_per_step_mm = 1.01};
   EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
               ElementsAre(HasSubstr("advance_per_step_mm: found 1.01")));
 }
 
 TEST(CutSettings, APowerThatTakesForEverIsRefused) {
-  CutSettings settings;
-  settings.power_exponent = 3.0;
+  CutSettings settings{.power_exponent = 3.0};
   for (const double power_w : {1e-3, 1e-200}) {
     settings.power_w = power_w;
     EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
@@ -66,8 +64,7 @@ TEST(CutSettings, StepsSolvedSoLooselyOrTightlyThatNoCutIsToBeBelievedAreRefused
 }
 
 TEST(CutSettings, AStepThatNoCutEndsWithIsRefused) {
-  CutSettings settings;
-  settings.advance_per_step_mm = 1e-9;
+  CutSettings settings{.advance_per_step_mm = 1e-9};
   EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
               ElementsAre(HasSubstr("advance_per_step_mm: found 1e-09")));
 }
@@ -84,8 +81,7 @@ TEST(CutSettings, APowerOfTheLawOutOfRangeIsRefused) {
 }
 
 TEST(CutSettings, ByThePapersRuleStepsTakeTheReferenceTimeAtAnySpeed) {
-  CutSettings settings;
-  settings.advance_per_step_mm = 0.1;
+  CutSettings settings{.advance_per_step_mm = 0.1};
   for (const double speed_mm_s : {1.0, 17.0}) {
     settings.speed_mm_s = speed_mm_s;
     settings.rule = CutRule::Paper;
@@ -99,10 +95,7 @@ TEST(CutSettings, ByThePapersRuleStepsTakeTheReferenceTimeAtAnySpeed) {
 }
 
 TEST(CutSettings, ThePapersRuleRefusesTearingAndStepsLongerThanTheNeedleIsWide) {
-  CutSettings settings;
-  settings.rule = CutRule::Paper;
-  settings.tear_energy_kpa = 5.0;
-  settings.speed_mm_s = 51.0;
+  CutSettings settings{.speed_mm_s = 51.0, .tear_energy_kpa = 5.0, .rule = CutRule::Paper};
   EXPECT_THAT(sentences(validate(settings, kNeedleDiameterMm)),
               ElementsAre(HasSubstr("tear_energy_kpa: found 5, expected none"),
                           HasSubstr("reference_step_s: found 0.02 at 51 mm/s: 1.02 mm a step")));

@@ -66,9 +66,7 @@ TEST(FaceAdjacency, PartsOfOneTetAreNeighboursOfTheTetAcrossTheFaceNotOfEachOthe
   mesh.tets = {tet(3), tet(4), tet(5)};  // the last is a copy of the first with a corner of its own
   TetMesh whole = mesh;
   whole.tets.pop_back();
-  MeshSplits splits;
-  splits.copies = {{TetId(0), mesh.tets[2], 0.5}};
-  splits.changed = {{TetId(0), mesh.tets[0], 0.5}};
+  MeshSplits splits{.copies = {{TetId(0), mesh.tets[2], 0.5}}, .changed = {{TetId(0), mesh.tets[0], 0.5}}};
   const FaceAdjacency adjacency = split_adjacency(mesh, splits, face_adjacency(whole));
   const auto list = [&](std::size_t t) { return std::vector(adjacency.of(t).begin(), adjacency.of(t).end()); };
   EXPECT_EQ(list(0), std::vector{1});

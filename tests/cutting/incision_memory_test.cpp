@@ -36,8 +36,7 @@ class IncisionMemory : public testing::RingInABlock {
     TetMesh mesh = make_block({32, 32, 8}, cells);
     const double expected =
         static_cast<double>(expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), volume, 0));
-    Material material;
-    material.volume = volume;
+    Material material{.volume = volume};
     const std::uint64_t before = *peak_memory_bytes();
     const TissueModel model = make_tissue_model(
         std::move(mesh), material, {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});

@@ -51,8 +51,7 @@ TEST_F(Incision, IsTheSameForEverySpeedIfSpeedTimesDullnessIs) {
 
 TEST_F(Incision, EveryStepIsSolvedInTissueThatHardlyChangesItsVolume) {
   for (const double poissons_ratio : {0.499, 0.4999}) {
-    Material stiff;
-    stiff.poissons_ratio = poissons_ratio;
+    Material stiff{.poissons_ratio = poissons_ratio};
     model_ = make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), stiff,
                                {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
     const IncisionResult result = cut(ring(4.0));
@@ -124,12 +123,9 @@ TEST_F(Incision, CountsTheSlipsAndThePeakTorqueOfAllSteps) {
 }
 
 TEST_F(Incision, AnOpenCutHasNoLoopToClose) {
-  ToolPath path;
-  path.is_closed = false;
+  ToolPath path{.is_closed = false};
   for (int i = 0; i < 8; ++i) {
-    Waypoint waypoint;
-    waypoint.position_mm = Vec3(8.0 + 2.0 * i, 16.0, 8.0);
-    waypoint.depth_mm = 4.0;
+    Waypoint waypoint{.position_mm = Vec3(8.0 + 2.0 * i, 16.0, 8.0), .depth_mm = 4.0};
     path.waypoints.push_back(waypoint);
   }
   settings_.cut.bond_stiffness_kpa_mm2 = 0.0;
@@ -180,8 +176,7 @@ TEST_F(Incision, SaysWhenItsStepsAreTooFewForTheFrames) {
 TEST_F(Incision, SaysThatItBrokeOffWhereAPositionIsNoLongerFinite) {
   // So soft, and at one corner so loaded, that the square of a displacement is beyond all numbers while that of a force
   // is not.
-  Material soft;
-  soft.youngs_modulus_kpa = 1e-6;
+  Material soft{.youngs_modulus_kpa = 1e-6};
   model_ = make_tissue_model(make_block({32, 32, 8}, {24, 24, 6}), soft,
                              {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
   model_.dead_load_mn.back().z() = 1e152;

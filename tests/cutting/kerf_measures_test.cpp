@@ -25,15 +25,13 @@ ToolPath ring(double depth_mm, double turn = 1.0) {
 }
 
 ToolPath line() {
-  ToolPath path;
-  path.is_closed = false;
+  ToolPath path{.is_closed = false};
   for (int i = 0; i < 8; ++i) path.waypoints.push_back({Vec3(8.0 + 2.0 * i, 16.0, 8.0), kDown, 4.0, 7.0});
   return path;
 }
 
 IncisionSettings coarse_settings() {
-  IncisionSettings settings;
-  settings.tool = Needle{.diameter_mm = 1.6};
+  IncisionSettings settings{.tool = Needle{.diameter_mm = 1.6}};
   settings.cut.reach_mm = 0.4;
   settings.cut.advance_per_step_mm = 0.8;
   settings.cut.dullness = 2.0;
@@ -203,10 +201,8 @@ TriMesh box(const Vec3& low, const Vec3& high) {
 
 /// The deep margin of a box-shaped kerf to a tumour of 4 x 4 x 2 mm whose deepest point lies at z = 6.
 std::optional<DeepMargin> margin_of(const Vec3& low, const Vec3& high) {
-  IncisionSettings settings;
-  settings.tumor_surface = box(Vec3(0, 0, 6), Vec3(4, 4, 8));
-  KerfBody body;
-  body.surface = box(low, high);
+  IncisionSettings settings{.tumor_surface = box(Vec3(0, 0, 6), Vec3(4, 4, 8))};
+  KerfBody body{.surface = box(low, high)};
   DepthReached depth;
   depth.profile.course.points = {Vec3(0, 0, 8), Vec3(1, 0, 8)};
   depth.profile.depth_mm = {1.5, 3.0};
@@ -242,17 +238,14 @@ TEST(DeepMargin, SaysHowMuchDeeperThanTheTumourTheFloorOfTheKerfLies) {
 
 TEST(DeepMargin, IsAbsentWithoutATumourSurface) {
   IncisionSettings settings;
-  KerfBody body;
-  body.surface = box(Vec3::Zero(), Vec3::Ones());
+  KerfBody body{.surface = box(Vec3::Zero(), Vec3::Ones())};
   EXPECT_FALSE(deep_margin(body, {}, settings));
 }
 
 TEST(DeepMargin, RefusesASurfaceThatIsInsideOut) {
-  IncisionSettings settings;
-  settings.tumor_surface = box(Vec3::Zero(), Vec3::Ones());
+  IncisionSettings settings{.tumor_surface = box(Vec3::Zero(), Vec3::Ones())};
   for (Triangle& t : settings.tumor_surface.triangles) std::swap(t[0], t[1]);
-  KerfBody body;
-  body.surface = box(Vec3::Zero(), Vec3::Ones());
+  KerfBody body{.surface = box(Vec3::Zero(), Vec3::Ones())};
   EXPECT_THROW(static_cast<void>(deep_margin(body, {}, settings)), InvalidArgument);
 }
 

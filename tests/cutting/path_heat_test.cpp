@@ -9,11 +9,9 @@ namespace {
 constexpr double kPowerW = 35.0;
 
 ToolPath path_of(const std::vector<double>& speeds_mm_s, bool is_closed = true) {
-  ToolPath path;
-  path.is_closed = is_closed;
+  ToolPath path{.is_closed = is_closed};
   for (const double speed : speeds_mm_s) {
-    Waypoint waypoint;
-    waypoint.speed_mm_s = speed;
+    Waypoint waypoint{.speed_mm_s = speed};
     path.waypoints.push_back(waypoint);
   }
   return path;

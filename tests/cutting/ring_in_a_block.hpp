@@ -39,9 +39,7 @@ class RingInABlock : public ::testing::Test {
     for (int i = 0; i < 32; ++i) {
       const double angle = 2.0 * M_PI * i / 32.0;
       const Vec3 outward(std::cos(angle), std::sin(angle), 0.0);
-      Waypoint waypoint;
-      waypoint.position_mm = kMiddle + kRadiusMm * outward;
-      waypoint.depth_mm = depth_mm;
+      Waypoint waypoint{.position_mm = kMiddle + kRadiusMm * outward, .depth_mm = depth_mm};
       path.waypoints.push_back(waypoint);
       path.tumor_edge.points.push_back(kMiddle + (kRadiusMm - 5.0) * outward);
     }

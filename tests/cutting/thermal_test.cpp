@@ -93,10 +93,7 @@ TEST(ThermalHalfWidth, APowerThatIsNotFiniteIsRefused) {
 
 TEST(ThermalSettings, EveryViolationIsListedWithItsField) {
   EXPECT_THAT(validate(kTissue), IsEmpty());
-  ThermalSettings settings;
-  settings.conductivity_w_m_k = 0.0;
-  settings.damage_c = 37.0;
-  settings.absorbed_fraction = 1.1;
+  ThermalSettings settings{.conductivity_w_m_k = 0.0, .damage_c = 37.0, .absorbed_fraction = 1.1};
   ThermalSettings lukewarm;
   lukewarm.damage_c = 37.0000001;  // "damaged" hundreds of kilometres away
   EXPECT_THAT(sentences(validate(lukewarm)), ElementsAre(HasSubstr("damage_c: found 37.0000001")));

@@ -10,20 +10,16 @@ namespace {
 
 /// A square of side 10 mm on the plane z = 0, 5 mm deep.
 ToolPath square(bool is_closed) {
-  ToolPath path;
-  path.is_closed = is_closed;
+  ToolPath path{.is_closed = is_closed};
   for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(10, 10, 0), Vec3(0, 10, 0)}) {
-    Waypoint waypoint;
-    waypoint.position_mm = corner;
+    Waypoint waypoint{.position_mm = corner};
     path.waypoints.push_back(waypoint);
   }
   return path;
 }
 
 CutSettings ten_mm_per_second() {
-  CutSettings settings;
-  settings.speed_mm_s = 10.0;
-  settings.overlap_mm = 5.0;
+  CutSettings settings{.speed_mm_s = 10.0, .overlap_mm = 5.0};
   return settings;
 }
 

@@ -22,9 +22,7 @@ class ViscousCut : public testing::RingInABlock {
                              {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
   }
   static Material soft() {
-    Material material;
-    material.youngs_modulus_kpa = 12.0;
-    material.poissons_ratio = 0.3;
+    Material material{.youngs_modulus_kpa = 12.0, .poissons_ratio = 0.3};
     return material;
   }
 

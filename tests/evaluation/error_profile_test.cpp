@@ -19,8 +19,7 @@ TEST(ErrorProfile, OfConcentricCirclesIsTheSameAllRound) {
 }
 
 TEST(ErrorProfile, OfAShiftedRingIsGreatestWhereItWasShifted) {
-  ProfileSettings settings;
-  settings.start_direction = Vec3::UnitX();
+  ProfileSettings settings{.start_direction = Vec3::UnitX()};
   const auto profile =
       error_profile(testing::circle(14.5, 360, Vec3(1.0, 0.0, 0.0)), testing::circle(10.0, 720), settings);
   ASSERT_TRUE(profile);
@@ -32,8 +31,7 @@ TEST(ErrorProfile, OfAShiftedRingIsGreatestWhereItWasShifted) {
 TEST(ErrorProfile, RunsCounterClockwiseFromTheStartDirectionWhicheverWayTheContourRuns) {
   Contour ring = testing::circle(14.5, 360, Vec3(0.0, 1.0, 0.0));
   for (int way = 0; way < 2; ++way) {
-    ProfileSettings settings;
-    settings.start_direction = Vec3::UnitX();
+    ProfileSettings settings{.start_direction = Vec3::UnitX()};
     auto profile = error_profile(ring, testing::circle(10.0, 720), settings);
     ASSERT_TRUE(profile);
     EXPECT_EQ(std::max_element(profile->begin(), profile->end()) - profile->begin(), 9);
@@ -48,8 +46,7 @@ TEST(SectorMeans, AreThoseOfAnErrorProfileForItsValues) {
   const Contour ring = testing::circle(14.5, 3600, Vec3(1.0, 0.0, 0.0)), edge = testing::circle(10.0, 720);
   std::vector<double> errors;
   for (const Vec3& p : ring.points) errors.push_back(p.norm() - 10.0 - 4.5);
-  ProfileSettings settings;
-  settings.start_direction = Vec3::UnitX();
+  ProfileSettings settings{.start_direction = Vec3::UnitX()};
   const auto means = sector_means(ring.points, errors, edge, settings);
   const auto profile = error_profile(ring, edge, settings);
   ASSERT_TRUE(means && profile);
@@ -81,15 +78,13 @@ TEST(ErrorProfile, RefusesAnOpenRingAndAStartAlongTheApproach) {
   Contour open = testing::circle(14.5, 360);
   open.is_closed = false;
   EXPECT_THROW(static_cast<void>(error_profile(open, testing::circle(10.0, 360), {})), InvalidArgument);
-  ProfileSettings settings;
-  settings.start_direction = Vec3::UnitZ();
+  ProfileSettings settings{.start_direction = Vec3::UnitZ()};
   EXPECT_THROW(static_cast<void>(error_profile(testing::circle(14.5, 360), testing::circle(10.0, 360), settings)),
                InvalidArgument);
 }
 
 TEST(ValuesAt, GiveASectorsValueInItsMiddleAndAreLinearBetween) {
-  ProfileSettings settings;
-  settings.start_direction = Vec3::UnitX();
+  ProfileSettings settings{.start_direction = Vec3::UnitX()};
   const Contour edge = testing::circle(10.0, 720, Vec3(3.0, -2.0, 0.0));
   const auto at = [&](double degrees) {
     const double a = degrees * std::acos(-1.0) / 180.0;

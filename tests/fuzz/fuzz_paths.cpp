@@ -13,10 +13,7 @@ constexpr double kPi = std::numbers::pi;
 const Vec3 kTop(15.0, 10.0, 10.0);  // middle of the block's upper face
 
 void add(ToolPath& path, const Vec3& position, double depth, const Vec3& axis = -Vec3::UnitZ()) {
-  Waypoint waypoint;
-  waypoint.position_mm = position;
-  waypoint.depth_mm = depth;
-  waypoint.axis = axis.normalized();
+  Waypoint waypoint{.position_mm = position, .axis = axis.normalized(), .depth_mm = depth};
   path.waypoints.push_back(waypoint);
 }
 

@@ -225,8 +225,7 @@ BrokenCase broken_case(int tets, SpecimenInputs& inputs, Random& random) {
 }
 
 Phantom specimen(std::uint64_t seed) {
-  PhantomSettings settings;
-  settings.seed = seed;
+  PhantomSettings settings{.seed = seed};
   Monitor silent;
   return make_phantom(settings, silent);
 }

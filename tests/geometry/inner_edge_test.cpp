@@ -157,8 +157,7 @@ TEST(InnerEdge, OfACarvedBlockIsTheInnerBorderOfItsKerf) {
   }
   std::set<Triangle> original;
   for (const BoundaryFace& face : boundary_faces(mesh)) original.insert(face.corners);
-  CutSurface surface;
-  surface.vertices = mesh.vertices;
+  CutSurface surface{.vertices = mesh.vertices};
   for (const BoundaryFace& face : boundary_faces(mesh, is_live)) {
     surface.triangles.push_back(face.corners);
     surface.is_skin.push_back(original.contains(face.corners) ? 1 : 0);
@@ -172,8 +171,7 @@ TEST(InnerEdge, OfACarvedBlockIsTheInnerBorderOfItsKerf) {
 
 TEST(InnerEdge, OfAKerfIsTheBorderOfWhatItLeavesInside) {
   const TetMesh mesh = testing::jittered_block({36, 36, 5}, 0.62, 2);
-  KerfInput kerf;
-  kerf.surface = boundary_surface(mesh);
+  KerfInput kerf{.surface = boundary_surface(mesh)};
   for (const Tet& tet : mesh.tets) {
     const Corners c = corners_of(mesh.vertices, tet);
     if (std::abs(((c[0] + c[1] + c[2] + c[3]) / 4.0).head<2>().norm() - 14.0) <= 0.75) kerf.removed_tets.push_back(c);

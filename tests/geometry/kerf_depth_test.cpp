@@ -11,8 +11,7 @@ namespace {
 /// A block of 20 x 8 x 5 mm in cells of 0.5 mm, from which every tet goes whose middle lies in one of the boxes.
 KerfInput carved(const std::vector<Box3>& boxes) {
   static const TetMesh mesh = make_block({20, 8, 5}, {40, 16, 10});
-  KerfInput kerf;
-  kerf.surface = boundary_surface(mesh);
+  KerfInput kerf{.surface = boundary_surface(mesh)};
   for (const Tet& tet : mesh.tets) {
     const testing::Corners corners = corners_of(mesh.vertices, tet);
     const Vec3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
@@ -48,8 +47,7 @@ TEST(KerfDepth, IsThatOfTheTrenchAndZeroWhereNothingIsCut) {
 
 TEST(KerfDepth, FindsAKerfBesideTheCourseWithinReach) {
   EXPECT_NEAR(depth_along(carved({kTrench}), course(6.0)).depth_mm.front(), 3.0, 0.15);
-  KerfDepthSettings settings;
-  settings.reach_mm = 1.0;
+  KerfDepthSettings settings{.reach_mm = 1.0};
   EXPECT_EQ(depth_along(carved({kTrench}), course(6.0), settings).depth_mm.front(), 0.0);
 }
 
@@ -64,8 +62,7 @@ TEST(KerfDepth, AToothThinnerThanTheNeedleCountsByItsShare) {
 }
 
 TEST(KerfDepth, RefusesWhatItCannotMeasure) {
-  KerfDepthSettings settings;
-  settings.reach_mm = 0.4;
+  KerfDepthSettings settings{.reach_mm = 0.4};
   EXPECT_THROW(static_cast<void>(depth_along(carved({kTrench}), course(4.0), settings)), InvalidArgument);
   EXPECT_THROW(static_cast<void>(depth_along(carved({kTrench}), Contour{{Vec3(1, 1, 5)}, false})), InvalidArgument);
   EXPECT_THROW(static_cast<void>(depth_along(carved({kTrench}), Contour{{Vec3(1, 1, 5), Vec3(1, 1, 5)}, false})),

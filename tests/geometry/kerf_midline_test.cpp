@@ -23,8 +23,7 @@ const TetMesh& block() {
 
 template <class Goes>
 KerfInput carved(const TetMesh& mesh, const Goes& goes) {
-  KerfInput input;
-  input.surface = boundary_surface(mesh);
+  KerfInput input{.surface = boundary_surface(mesh)};
   for (const Tet& tet : mesh.tets) {
     const Corners corners = corners_of(mesh.vertices, tet);
     if (goes(corners)) input.removed_tets.push_back(corners);
@@ -209,16 +208,14 @@ TEST(Midline, OfAnOpenCutRunsFromEndToEnd) {
 }
 
 TEST(Midline, OfNoKerfIsAbsent) {
-  KerfInput input;
-  input.surface = boundary_surface(block());
+  KerfInput input{.surface = boundary_surface(block())};
   const KerfMidline result = midline_contour(input);
   EXPECT_FALSE(result.contour);
   EXPECT_EQ(result.gap_deg, 360.0);
 }
 
 TEST(Midline, RefusesSettingsAndPointsThatMakeNoSense) {
-  KerfInput input;
-  input.surface = boundary_surface(block());
+  KerfInput input{.surface = boundary_surface(block())};
   EXPECT_THROW((void)midline_contour(input, {.layer_top_mm = 3.0}), InvalidArgument);
   EXPECT_THROW((void)midline_contour(input, {.min_coverage = 0.0}), InvalidArgument);
   EXPECT_THROW((void)midline_contour(input, {.spacing_mm = -1.0}), InvalidArgument);

@@ -87,10 +87,7 @@ TEST(CleanCloud, TakesAwayTheTableAndWhatLiesBeneath) {
     for (int i = 12; i < 28; ++i) cloud.points.emplace_back(i, j, 5.0 + 0.3 * (i % 3));
   }
   cloud.points.emplace_back(20.0, 20.0, -6.0);
-  CleaningSettings settings;
-  settings.planes = 1;
-  settings.outlier_neighbours = 0;
-  settings.plane_tolerance_mm = 0.5;
+  CleaningSettings settings{.planes = 1, .plane_tolerance_mm = 0.5, .outlier_neighbours = 0};
   Random random(1);
   Workers workers(1);
   const CleanedCloud cleaned = clean_cloud(cloud, settings, random, workers);

@@ -18,9 +18,7 @@ VertexId v(std::size_t i) {
 }
 
 TetMesh one_tet() {
-  TetMesh mesh;
-  mesh.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  mesh.tets = {{v(0), v(1), v(2), v(3)}};
+  TetMesh mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .tets = {{v(0), v(1), v(2), v(3)}}};
   return mesh;
 }
 

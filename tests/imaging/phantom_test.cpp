@@ -15,9 +15,7 @@ namespace {
 
 // Coarse voxels keep the many-seed tests quick; nothing but the CT depends on them.
 PhantomSettings coarse(std::uint64_t seed) {
-  PhantomSettings settings;
-  settings.seed = seed;
-  settings.spacing_mm = Vec3::Constant(3.0);
+  PhantomSettings settings{.seed = seed, .spacing_mm = Vec3::Constant(3.0)};
   return settings;
 }
 

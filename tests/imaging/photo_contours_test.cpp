@@ -89,8 +89,7 @@ TEST(FindPhotoContours, AnIncisionThatCutsIntoTheTumorIsAResult) {
   EXPECT_TRUE(found.incision.is_closed);
   expect_contour(found.incision, truth.incision);
   expect_contour(found.tumor_edge, truth.tumor);
-  EvaluationSettings settings;
-  settings.contour = ContourKind::InnerEdge;
+  EvaluationSettings settings{.contour = ContourKind::InnerEdge};
   EXPECT_EQ(evaluate(found.incision, found.tumor_edge, settings).outcome, Outcome::PositiveMargin);
 }
 

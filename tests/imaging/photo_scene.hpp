@@ -34,8 +34,7 @@ struct Scene {
 };
 
 inline Scene scene(double width_px, bool is_kerf, std::uint64_t seed = 1) {
-  Scene s;
-  s.red = is_kerf ? RedLine::Kerf : RedLine::Annotation;
+  Scene s{.red = is_kerf ? RedLine::Kerf : RedLine::Annotation};
   s.photo.width = s.photo.height = 1000;
   s.photo.mm_per_pixel = kScale;
   s.photo.seed = seed;
@@ -80,8 +79,7 @@ inline void expect_contour(const Contour& found, const Contour& truth) {
 }
 
 inline void expect_same_measures(const PhotoContours& found, const Scene& truth) {
-  EvaluationSettings settings;
-  settings.contour = ContourKind::InnerEdge;
+  EvaluationSettings settings{.contour = ContourKind::InnerEdge};
   const Evaluation seen = evaluate(found.incision, found.tumor_edge, settings);
   const Evaluation real = evaluate(truth.incision, truth.tumor, settings);
   EXPECT_EQ(seen.outcome, real.outcome);

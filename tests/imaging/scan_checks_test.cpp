@@ -11,8 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 
 CtVolume virtual_scan(std::uint64_t seed) {
-  PhantomSettings settings;
-  settings.seed = seed;
+  PhantomSettings settings{.seed = seed};
   settings.spacing_mm = Vec3::Constant(1.5);  // quick to make
   Monitor silent;
   return make_phantom(settings, silent).ct;

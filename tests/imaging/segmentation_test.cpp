@@ -38,9 +38,7 @@ CtVolume scan_of(const VolumeGrid& grid, const std::function<double(const Vec3&)
 }
 
 VolumeGrid grid_of(int nx, int ny, int nz, const Vec3& spacing = Vec3::Ones()) {
-  VolumeGrid grid;
-  grid.size = {nx, ny, nz};
-  grid.spacing_mm = spacing;
+  VolumeGrid grid{.size = {nx, ny, nz}, .spacing_mm = spacing};
   return grid;
 }
 
@@ -66,8 +64,7 @@ CtVolume ball_of_tissue() {
 }
 
 TEST(Segmentation, FindsTheVolumeOfABallWithinAPercent) {
-  SegmentationSettings settings;
-  settings.smoothing_mm = 0.0;
+  SegmentationSettings settings{.smoothing_mm = 0.0};
   const Segmentation result = run(ball_of_tissue(), settings);
   EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.01);
   EXPECT_NEAR(result.volume_mm3 / kBallVolume, 1.0, 0.01);
@@ -103,8 +100,7 @@ TEST(Segmentation, TakesAStrokeOfTheBrushAsTissueOrAsNone) {
   const Vec3 left(15, 20, 20), right(43, 20, 20);
   const CtVolume ct =
       scan_of(grid, [&](const Vec3& p) { return -1000.0 + 1050.0 * std::max(ball(p, left, 10), ball(p, right, 10)); });
-  SegmentationSettings settings;
-  settings.seeds_mm = {left};
+  SegmentationSettings settings{.seeds_mm = {left}};
   const Segmentation one = run(ct, settings);
   EXPECT_NEAR(one.volume_mm3, 4189.0, 80.0);
   settings.edits = {{true, 4.0, {left, right}}};  // a bridge: both balls are one piece
@@ -160,8 +156,7 @@ TEST(Segmentation, TakesLabelsNearTheEdgeOfTheirGridAsTheyAre) {
   const auto drawn = static_cast<double>(std::ranges::count(labels.voxels, 1));
   Monitor monitor;
   Workers workers(2);
-  SegmentationSettings settings;
-  settings.smoothing_mm = 0.0;
+  SegmentationSettings settings{.smoothing_mm = 0.0};
   EXPECT_EQ(segment_labels(labels, settings, workers, monitor).volume_mm3, drawn);
 }
 
@@ -197,9 +192,7 @@ TEST(Segmentation, ListsEverySettingThatIsWrongForLabels) {
 TEST(Segmentation, TakesLabelsWhoseCentresLieOnTheRegionsBorder) {
   LabelVolume labels{grid_of(12, 12, 12, Vec3::Constant(0.1)), std::vector<std::uint8_t>(12 * 12 * 12, 0)};
   for (std::size_t v = 0; v < labels.voxels.size(); ++v) labels.voxels[v] = labels.grid.voxel_at(v)[0] >= 3 ? 1 : 0;
-  SegmentationSettings settings;
-  settings.smoothing_mm = 0.0;
-  settings.roi_box_mm = Box3(Vec3::Constant(-1.0), Vec3(0.3, 2.0, 2.0));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3::Constant(-1.0), Vec3(0.3, 2.0, 2.0)), .smoothing_mm = 0.0};
   ASSERT_GT(labels.grid.world_from_index(Vec3(3, 0, 0)).x(), 0.3) << "by rounding";
   Monitor monitor;
   Workers workers(1);
@@ -214,17 +207,14 @@ TEST(Segmentation, RefusesARegionOrASeedWithoutALabel) {
     return testing::refusal_of<CaseError>([&] { return segment_labels(of, settings, workers, monitor); });
   };
   EXPECT_THAT(refusal(labels_of(ball_of_tissue(), 1000, 1), {}), HasSubstr("0 in every voxel of the region"));
-  SegmentationSettings corner;
-  corner.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(3, 3, 3));
+  SegmentationSettings corner{.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(3, 3, 3))};
   EXPECT_THAT(refusal(labels, corner), HasSubstr("0 in every voxel of the region"));
-  SegmentationSettings seed;
-  seed.seeds_mm = {Vec3(1, 1, 1)};
+  SegmentationSettings seed{.seeds_mm = {Vec3(1, 1, 1)}};
   EXPECT_THAT(refusal(labels, seed), HasSubstr("seed_mm[0]: found a point where the label is 0"));
 }
 
 TEST(Segmentation, ShrinksABallLessThanHalfAsMuchAsAGaussianWould) {
-  SegmentationSettings settings;
-  settings.smoothing_mm = 0.0;
+  SegmentationSettings settings{.smoothing_mm = 0.0};
   const double sharp = run(ball_of_tissue(), settings).occupancy_volume_mm3;
   settings.smoothing_mm = 1.2;
   const double smooth = run(ball_of_tissue(), settings).occupancy_volume_mm3;
@@ -234,8 +224,7 @@ TEST(Segmentation, ShrinksABallLessThanHalfAsMuchAsAGaussianWould) {
 }
 
 TEST(Segmentation, HasTheSameBitsAtAnyThreadCount) {
-  SegmentationSettings settings;
-  settings.opening_radius_mm = 1.5;
+  SegmentationSettings settings{.opening_radius_mm = 1.5};
   Monitor monitor;
   Workers alone(1), three(3);
   const Segmentation expected = segment(ball_of_tissue(), settings, alone, monitor);
@@ -246,8 +235,7 @@ TEST(Segmentation, HasTheSameBitsAtAnyThreadCount) {
 }
 
 TEST(Segmentation, LeavesAMarginOfAirAllAroundEvenWhereTheRegionCutsThroughTissue) {
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15))};
   const Segmentation result = run(ball_of_tissue(), settings);
   const VolumeGrid& grid = result.labels.grid;
   for (int k = 0; k < grid.size[2]; ++k)
@@ -291,9 +279,7 @@ TEST(MadeSkin, IsThatOfABumpAloneWhereOnlyABumpReachesTheRegionsFace) {
     const bool is_slab = p.z() > 5 && p.z() < 20 && p.x() > 5 && p.x() < 35 && p.y() > 5 && p.y() < 35;
     return is_slab || (p - Vec3(12, 12, 19)).norm() < 5.0 ? 50.0 : -1000.0;
   });
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
-  settings.smoothing_mm = 0.0;
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20)), .smoothing_mm = 0.0};
   const MadeSkin faces(run(ct, settings));
   EXPECT_EQ(faces.cut_at(Vec3(12, 12, 20.0), Vec3::UnitZ()), RegionFace::Superior);
   EXPECT_FALSE(faces.cut_at(Vec3(28, 28, 20.0), Vec3::UnitZ())) << "sound skin at the same height";
@@ -326,8 +312,7 @@ double share_of_top(const Segmentation& found, double radius_mm) {
 }
 
 TEST(MadeSkin, IsSeenWhereTheTissueWasPainted) {
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20))};
   std::vector<TissueEdit> strokes;
   for (const int y : {16, 20, 24})
     strokes.push_back({.is_tissue = true, .radius_mm = 9.0, .path_mm = {Vec3(16, y, 20), Vec3(24, y, 20)}});
@@ -360,8 +345,7 @@ TEST(MadeSkin, IsPaintedWhereAStrokeHasMadeItAndNowhereElse) {
 }
 
 TEST(MadeSkin, IsFollowedWhereOpeningAndSmoothingMoveIt) {
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20))};
   for (const double opening_mm : {0.0, 4.0, 6.0}) {
     for (const double smoothing_mm : {0.0, 1.2, 5.0}) {
       settings.opening_radius_mm = opening_mm;
@@ -377,8 +361,7 @@ TEST(MadeSkin, IsNotMadeByNoiseAboveTheSkin) {
     const auto [i, j, k] = ct.grid.voxel_at(v);
     if (k > 20) ct.voxels[v] = v % 37 == 0 ? 50 : -1000;  // above z = 20: air with specks
   }
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(40, 40, 20))};
   EXPECT_EQ(run(ct, settings).cut_faces(), 0);
 }
 
@@ -387,8 +370,7 @@ TEST(MadeSkin, LiesAtTheScansEndWhereAnObliqueScanEndsWithinTheRegion) {
   ct.grid.direction = Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   ct.grid.size[2] = 16;
   ct.voxels.resize(ct.grid.voxel_count());
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3::Constant(-100), Vec3::Constant(100));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3::Constant(-100), Vec3::Constant(100))};
   const MadeSkin faces(run(ct, settings));
   const Vec3 out = ct.grid.direction.col(2);
   EXPECT_TRUE(faces.cut_at(ct.grid.world_from_index(Vec3(15, 15, 15.5)), out));
@@ -396,9 +378,7 @@ TEST(MadeSkin, LiesAtTheScansEndWhereAnObliqueScanEndsWithinTheRegion) {
 }
 
 TEST(Segmentation, CutsHalfABallAtTheFaceOfTheLastVoxelInTheRegion) {
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15));
-  settings.smoothing_mm = 0.0;
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(0, 0, 0), Vec3(30, 30, 15)), .smoothing_mm = 0.0};
   // The cut lies at z = 15.5, 0.1 mm above the centre: half a ball and a slice of 0.1 mm.
   EXPECT_NEAR(run(ball_of_tissue(), settings).occupancy_volume_mm3 / (0.5 * kBallVolume + 31.4), 1.0, 0.015);
 }
@@ -422,8 +402,7 @@ TEST(Segmentation, KeepsOneGridForLabelAndOccupancyInWorldCoordinates) {
 TEST(Segmentation, NamesTheWorldSideThatIsCutWhenTheGridIsTurned) {
   CtVolume ct = ball_of_tissue();
   ct.grid.direction << 0, -1, 0, 1, 0, 0, 0, 0, 1;  // j points to the right (-x), i to posterior (+y)
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(-15, -100, -100), Vec3(100, 100, 100));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(-15, -100, -100), Vec3(100, 100, 100))};
   const Segmentation result = run(ct, settings);
   EXPECT_EQ(result.cut_faces(), 1);
   EXPECT_GT(result.cut_voxels[static_cast<std::size_t>(RegionFace::Right)], 0U);
@@ -463,14 +442,12 @@ TEST(Segmentation, CautionsWhereAnotherBodyMayBeTheSpecimen) {
   EXPECT_NEAR(reason.value.value(), 0.97, 0.02);
   EXPECT_EQ(run(balls_of(6.5)).verdict.status(), VerdictStatus::Caution);
   EXPECT_EQ(run(balls_of(6.0)).verdict.status(), VerdictStatus::Ok) << "0.22 of the other's volume";
-  SegmentationSettings seeded;
-  seeded.seeds_mm = {Vec3(45, 15, 15)};
+  SegmentationSettings seeded{.seeds_mm = {Vec3(45, 15, 15)}};
   EXPECT_EQ(run(balls_of(9.9), seeded).verdict.status(), VerdictStatus::Ok);
 }
 
 TEST(Segmentation, RefusesSmoothingThatLeavesNothing) {
-  SegmentationSettings settings;
-  settings.smoothing_mm = 5.0;
+  SegmentationSettings settings{.smoothing_mm = 5.0};
   const CtVolume thin = scan_of(grid_of(31, 31, 9, Vec3(0.5, 0.5, 0.5)),
                                 [](const Vec3& p) { return ball(p, Vec3(7.5, 7.5, 2.0), 1.0) > 0 ? 50.0 : -1000.0; });
   EXPECT_THAT(message_of(thin, settings), HasSubstr("smoothing_mm: found 5, which leaves nothing of the body"));
@@ -498,8 +475,7 @@ TEST(Segmentation, FillsClosedCavitiesAndLeavesThoseWithAWayOut) {
   const Segmentation open = run(with_cavity(true));
   EXPECT_EQ(open.holes_filled, 0U);
   EXPECT_LT(open.occupancy_volume_mm3 / kBallVolume, 0.95);
-  SegmentationSettings settings;
-  settings.fill_holes = false;
+  SegmentationSettings settings{.fill_holes = false};
   EXPECT_LT(run(with_cavity(false), settings).occupancy_volume_mm3 / kBallVolume, 0.97);
 }
 
@@ -507,8 +483,7 @@ TEST(Segmentation, PlacesTheSurfaceBetweenTissueAndFatOrBoneAsRightAsAgainstAir)
   for (const double around : {-1000.0, -100.0, 1200.0}) {
     const CtVolume ct = scan_of(
         grid_of(31, 31, 31), [=](const Vec3& p) { return ball(p, Vec3(15.2, 14.9, 15.4), 10.0) > 0 ? 50.0 : around; });
-    SegmentationSettings settings;
-    settings.smoothing_mm = 0.0;
+    SegmentationSettings settings{.smoothing_mm = 0.0};
     EXPECT_NEAR(run(ct, settings).occupancy_volume_mm3 / kBallVolume, 1.0, 0.012)
         << "surroundings of " << around << " HU";
   }
@@ -521,8 +496,7 @@ TEST(Segmentation, LeavesOutTheThinShellBetweenBoneAndAirThatLooksLikeTissue) {
     return p.x() > 23.3 && p.x() < 40.3 && p.y() > 4.3 && p.y() < 26.3 && p.z() > 4.3 && p.z() < 26.3 ? 1000.0
                                                                                                       : -1000.0;
   });
-  SegmentationSettings settings;
-  settings.opening_radius_mm = 1.5;
+  SegmentationSettings settings{.opening_radius_mm = 1.5};
   const Segmentation result = run(ct, settings);
   EXPECT_NEAR(result.occupancy_volume_mm3 / kBallVolume, 1.0, 0.03);
 }
@@ -533,8 +507,7 @@ TEST(Segmentation, CautionsWhereSmoothingTakesAPartOfASmallBody) {
     return scan_of(grid_of(40, 40, 40, Vec3::Constant(spacing)),
                    [&](const Vec3& p) { return -1000.0 + 1040.0 * ball(p, Vec3::Constant(20.0 * spacing), radius_mm); });
   };
-  SegmentationSettings longer;
-  longer.smoothing_mm = 0.6;
+  SegmentationSettings longer{.smoothing_mm = 0.6};
   const Segmentation small = run(body(3.0), longer);  // 6 mm across
   ASSERT_EQ(small.verdict.reasons().size(), 1U);
   EXPECT_EQ(small.verdict.reasons()[0].id, "scan");
@@ -560,8 +533,7 @@ TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
     }
   } monitor;
   Workers workers(2);
-  SegmentationSettings settings;
-  settings.roi_box_mm = Box3(Vec3(10, 0, 0), Vec3(30, 30, 20));
+  SegmentationSettings settings{.roi_box_mm = Box3(Vec3(10, 0, 0), Vec3(30, 30, 20))};
   const Segmentation found = segment(ball_of_tissue(), settings, workers, monitor);
   ASSERT_EQ(found.verdict.reasons().size(), 1U);
   EXPECT_EQ(found.verdict.reasons()[0].id, "scan");
@@ -573,8 +545,7 @@ TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
 
 TEST(Segmentation, RefusesSeedsAndRegionsThatDoNotFitTheVolume) {
   const CtVolume ct = two_balls(false);
-  SegmentationSettings settings;
-  settings.seeds_mm = {Vec3(15, 15, 99)};
+  SegmentationSettings settings{.seeds_mm = {Vec3(15, 15, 99)}};
   EXPECT_THAT(message_of(ct, settings),
               ::testing::AllOf(HasSubstr("seed_mm[0]: found [15, 15, 99]"),
                                HasSubstr("a point inside the volume, [[0, 0, 0], [59, 30, 30]] mm")));
@@ -594,9 +565,7 @@ TEST(Segmentation, RefusesSeedsAndRegionsThatDoNotFitTheVolume) {
 }
 
 TEST(Segmentation, RefusesAWindowWithoutTissueAndAnOpeningThatLeavesNone) {
-  SegmentationSettings settings;
-  settings.window_low_hu = 300.0;
-  settings.window_high_hu = 400.0;
+  SegmentationSettings settings{.window_low_hu = 300.0, .window_high_hu = 400.0};
   EXPECT_THAT(message_of(ball_of_tissue(), settings),
               ::testing::AllOf(HasSubstr("no voxel with HU in [300, 400]"), HasSubstr("-1000 to 50 HU")));
   settings = {};
@@ -642,9 +611,7 @@ class SegmentationOfPhantoms : public ::testing::TestWithParam<PhantomCase> {};
 TEST_P(SegmentationOfPhantoms, FindsTheTrueVolumeAndTheTrueSkin) {
   Monitor monitor;
   Workers workers(2);
-  PhantomSettings settings;
-  settings.seed = GetParam().seed;
-  settings.spacing_mm = GetParam().spacing_mm;
+  PhantomSettings settings{.seed = GetParam().seed, .spacing_mm = GetParam().spacing_mm};
   const Phantom phantom = make_phantom(settings, monitor);
   const Segmentation result = segment(phantom.ct, {}, workers, monitor);
   RecordProperty("occupancy_error_percent",

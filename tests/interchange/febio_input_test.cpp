@@ -213,8 +213,7 @@ TEST_F(FebioInput, TheLawIsTheNearestAndItsDifferenceIsSaid) {
   EXPECT_EQ(law.child("v").text().as_double(), 0.49);
   EXPECT_EQ(law.child("density").text().as_double(), 1040e-9);
   EXPECT_THAT(comments(document_), HasSubstr("no corotational law"));
-  Material neo;
-  neo.model = MaterialModel::StableNeoHookean;
+  Material neo{.model = MaterialModel::StableNeoHookean};
   load(specimen(neo));
   EXPECT_STREQ(root_.child("Material").find_child_by_attribute("name", "tissue").attribute("type").value(),
                "neo-Hookean");
@@ -246,9 +245,7 @@ TEST_F(FebioInput, ATitleWithControlCharactersAndHyphensStaysXml) {
 }
 
 TEST_F(FebioInput, StiffeningTissueIsRefused) {
-  Material stiffening;
-  stiffening.model = MaterialModel::StableNeoHookean;
-  stiffening.stiffening = 0.469;
+  Material stiffening{.model = MaterialModel::StableNeoHookean, .stiffening = 0.469};
   const TissueModel model = specimen(stiffening);
   EXPECT_EQ(refused_field([&] {
               return febio_input_xml({model, Vec3::Zero(), "", ""});
@@ -257,8 +254,7 @@ TEST_F(FebioInput, StiffeningTissueIsRefused) {
 }
 
 TEST_F(FebioInput, FibresAreRefused) {
-  Material fibrous;
-  fibrous.fibre_modulus_kpa = 30.0;
+  Material fibrous{.fibre_modulus_kpa = 30.0};
   const TissueModel model = specimen(fibrous);
   EXPECT_EQ(refused_field([&] {
               return febio_input_xml({model, Vec3::Zero(), "", ""});

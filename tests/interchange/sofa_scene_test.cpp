@@ -150,12 +150,10 @@ TEST_F(SofaScene, WhatSofaCannotSayIsRefused) {
   };
   const TissueModel held = specimen({}, {FixedConstraint{testing::slab_x(0.1)}, testing::holder()});
   EXPECT_EQ(refused_field(scene(held)), "specimen.constraints[1].surface");
-  Material fibrous;
-  fibrous.fibre_modulus_kpa = 30.0;
+  Material fibrous{.fibre_modulus_kpa = 30.0};
   const TissueModel with_fibres = specimen(fibrous);
   EXPECT_EQ(refused_field(scene(with_fibres)), "specimen.material.fibre_modulus_kpa");
-  Material neo;
-  neo.model = MaterialModel::StableNeoHookean;
+  Material neo{.model = MaterialModel::StableNeoHookean};
   MaterialField field;
   field.youngs_modulus_kpa.assign(held.mesh.tets.size(), 70.0);
   field.youngs_modulus_kpa[0] = 7.0;

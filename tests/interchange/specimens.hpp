@@ -48,8 +48,7 @@ inline SupportConstraint holder() {
   TriMesh sheet;
   sheet.vertices = {Vec3(-50, -50, -1), Vec3(50, -50, -1), Vec3(50, 50, -1.25), Vec3(-50, 50, -1.25)};
   sheet.triangles = {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{0}, VertexId{2}, VertexId{3}}};
-  SupportConstraint support;
-  support.holder = std::make_shared<HolderSurface>(HolderSurface{"holder.stl", sheet});
+  SupportConstraint support{.holder = std::make_shared<HolderSurface>(HolderSurface{"holder.stl", sheet})};
   return support;
 }
 

@@ -73,8 +73,7 @@ TEST(ManifestFile, ReadsBackWhatWasWritten) {
 
 TEST(ManifestFile, RefusesSettingsThatAreNotJsonAndTimesThatAreNotFinite) {
   const TemporaryFolder folder;
-  Manifest manifest;
-  manifest.settings_json = "{";
+  Manifest manifest{.settings_json = "{"};
   EXPECT_THROW(write_manifest(folder.path(), manifest), InvalidArgument);
   manifest.settings_json = "{}";
   manifest.wall_s = std::numeric_limits<double>::quiet_NaN();

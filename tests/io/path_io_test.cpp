@@ -19,8 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 ToolPath sample_path() {
-  ToolPath path;
-  path.frame = PathFrame::Robot;
+  ToolPath path{.frame = PathFrame::Robot};
   path.waypoints = {{Vec3(1.0 / 3.0, -0.1, 1e-17), -Vec3::UnitZ(), 5.0, 7.0},
                     {Vec3(10.0, 0.0, 0.0), Vec3(0.6, 0.0, -0.8), 4.75, 7.0},
                     {Vec3(0.0, 10.0, 0.0), -Vec3::UnitZ(), 5.0, 3.3}};

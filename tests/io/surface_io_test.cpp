@@ -83,8 +83,7 @@ TEST(SurfaceName, IsKnownInAnyCase) {
 }
 
 TEST_F(SurfaceFile, CloudsHaveNoTriangles) {
-  TriMesh cloud;
-  cloud.vertices = {Vec3(1, 2, 3), Vec3(4, 5, 6)};
+  TriMesh cloud{.vertices = {Vec3(1, 2, 3), Vec3(4, 5, 6)}};
   write_ply(folder_ / "a.ply", cloud);
   write_vtp(folder_ / "a.vtp", cloud);
   for (const char* name : {"a.ply", "a.vtp"}) {

@@ -30,9 +30,7 @@ class HostileVolume : public ::testing::Test {
     fs::create_directory(stack);
     write_bytes(stack / "0.png", png_bytes(3, 2, 8, 0, std::string(6, '\1')));
     write_bytes(stack / "1.png", second);
-    CtReadSettings settings;
-    settings.spacing_mm = Vec3(1, 1, 1);
-    settings.hu = GrayToHu{};
+    CtReadSettings settings{.spacing_mm = Vec3(1, 1, 1), .hu = GrayToHu{}};
     RecordingMonitor monitor;
     return message_of<DataError>([&] { (void)read_ct(stack, settings, monitor); });
   }
@@ -74,9 +72,7 @@ TEST_F(HostileVolume, AnInterlacedPictureIsReadAsItIs) {
   fs::create_directory(stack);
   write_bytes(stack / "0.png", picture);
   write_bytes(stack / "1.png", picture);
-  CtReadSettings settings;
-  settings.spacing_mm = Vec3(1, 1, 1);
-  settings.hu = GrayToHu{};
+  CtReadSettings settings{.spacing_mm = Vec3(1, 1, 1), .hu = GrayToHu{}};
   RecordingMonitor monitor;
   EXPECT_EQ(read_ct(stack, settings, monitor).volume.voxels, (std::vector<std::int16_t>{42, 42}));
 }

@@ -61,8 +61,7 @@ std::string failure_of(const TemporaryFolder& folder, const CtReadSettings& sett
 /// Gantry tilted by `degrees`: slices lean backwards while the table moves along z in the given steps.
 Scan tilted_scan(double degrees, const std::vector<double>& table_mm) {
   const double angle = degrees * std::numbers::pi / 180;
-  Scan scan;
-  scan.column = Vec3(0, std::cos(angle), -std::sin(angle));
+  Scan scan{.column = Vec3(0, std::cos(angle), -std::sin(angle))};
   for (const double z : table_mm) scan.positions.emplace_back(-24, -23 + 10 * std::sin(angle), z);
   return scan;
 }

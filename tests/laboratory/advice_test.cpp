@@ -27,9 +27,7 @@ class ByHand {
   /// @param planned_mm, corrected_mm  true mean errors; absent: the ring stayed open.
   Trial& add(TrialRole role, std::optional<double> p_worse, std::optional<double> planned_mm,
              std::optional<double> corrected_mm) {
-    Trial trial;
-    trial.name = "S" + std::to_string(trials.size() + 1);
-    trial.role = role;
+    Trial trial{.name = "S" + std::to_string(trials.size() + 1), .role = role};
     trial.assessment = {{"advice", "compensate"},  {"p_worse", p_worse ? AdviceJson(*p_worse) : AdviceJson()},
                         {"p_worse_if_alike", 0.1}, {"p_worse_if_unlike", 0.2},
                         {"p_unlike", 0.3},         {"p_close_margin", {{"intended", 0.9}, {"corrected", 0.1}}}};
@@ -146,8 +144,7 @@ TEST(HoldAdviceAgainstTruth, RefusesATruthThatIsCutOff) {
 }
 
 TEST(TableTwo, ARegistrationThatWasRefusedHasNoResidual) {
-  Trial trial;
-  trial.ended_at = "register";
+  Trial trial{.ended_at = "register"};
   EXPECT_TRUE(table_2_json({trial}).at(0).at("registration_rmse_mm").is_null());
   trial.registration_rmse_mm = 0.4;
   EXPECT_EQ(table_2_json({trial}).at(0).at("registration_rmse_mm"), 0.4);

@@ -30,8 +30,7 @@ PowerCut kept_cut() {
 }
 
 TEST(PowerTable, SaysWhatASeriesFoundAndLeavesOutWhatWasNotMeasured) {
-  PowerSeries series;
-  series.cuts = {kept_cut()};
+  PowerSeries series{.cuts = {kept_cut()}};
   PowerCut none = kept_cut();
   none.outcome = Outcome::NotConverged;
   none.bulge_mm.reset();

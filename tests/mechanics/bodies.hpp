@@ -35,8 +35,7 @@ inline TetMesh irregular_block(const Vec3& size, std::array<int, 3> cells, doubl
 
 /// An irregular block clamped at x = 0: the usual specimen of these tests.
 inline TissueModel clamped_block(std::array<int, 3> cells = {4, 3, 3}, double nu = 0.45) {
-  Material material;
-  material.poissons_ratio = nu;
+  Material material{.poissons_ratio = nu};
   return make_tissue_model(irregular_block(Vec3(20, 12, 9), cells, 0.2, 7), material, {FixedConstraint{plane_x(0.0)}});
 }
 

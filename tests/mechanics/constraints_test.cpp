@@ -131,8 +131,7 @@ TEST(Constraint, IsTheSameAgainFromItsBytesWhateverItsRegion) {
 }
 
 TEST(Constraint, IsKnownByTheSurfaceOfItsHolderNotByTheFilesName) {
-  TriMesh surface;
-  surface.vertices = {Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(0, 9, 0)};
+  TriMesh surface{.vertices = {Vec3(0, 0, 0), Vec3(9, 0, 0), Vec3(0, 9, 0)}};
   const auto bytes = [](const std::string& name, const TriMesh& of) {
     return bytes_of(Constraint(SupportConstraint{.holder = std::make_shared<HolderSurface>(HolderSurface{name, of})}));
   };

@@ -25,8 +25,7 @@ constexpr double kDifferenceTolerance = 1e-6;
 constexpr double kRounding = 1e-12;
 
 TissueModel one_tet(double nu = 0.45) {
-  Material material;
-  material.poissons_ratio = nu;
+  Material material{.poissons_ratio = nu};
   return testing::one_tet(material);
 }
 

@@ -55,8 +55,7 @@ SupportConstraint support_of(TriMesh surface) {
 TissueModel resting_block(const SupportConstraint& support, double z = 0.0, const Vec3& gravity = Vec3(0, 0, -9810)) {
   TetMesh mesh = make_block(Vec3(60, 30, 15), {8, 4, 3});
   for (Vec3& p : mesh.vertices) p[2] += z;
-  Material material;
-  material.poissons_ratio = 0.45;
+  Material material{.poissons_ratio = 0.45};
   return make_tissue_model(std::move(mesh), material, {FixedConstraint{plane_x(0.0)}, support}, gravity);
 }
 

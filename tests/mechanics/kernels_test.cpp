@@ -128,8 +128,7 @@ TEST_P(Kernels, SolveWithAMatrixOfSixteenBits) {
   for (const VertexId v : select(model.mesh, EndRegion{Vec3::UnitX(), 4.0})) right[v.index()] = Vec3(3, -1, 2);
   hold_constrained(model, r.stiffness, right);
   Workers workers(2);
-  PcgSettings settings;
-  settings.relative_tolerance = 1e-6;
+  PcgSettings settings{.relative_tolerance = 1e-6};
   Points exact(right.size());
   Points rounded(right.size());
   for (const Precision precision : {Precision::Double, Precision::Single}) {
@@ -152,8 +151,7 @@ TEST_P(Kernels, FindTheSameEquilibrium) {
     set_isa(isa);
     Workers workers(1);
     Monitor monitor;
-    StaticSettings settings;
-    settings.relative_tolerance = 1e-10;
+    StaticSettings settings{.relative_tolerance = 1e-10};
     return solve_static(model, settings, workers, monitor);
   };
   const StaticResult found = solve(GetParam());

@@ -36,10 +36,7 @@ struct LawCase {
 };
 
 Material material_of(const LawCase& law) {
-  Material material;
-  material.model = law.model;
-  material.volume = law.volume;
-  material.poissons_ratio = 0.45;
+  Material material{.model = law.model, .volume = law.volume, .poissons_ratio = 0.45};
   if (law.has_fibres) {
     material.fibre_modulus_kpa = 120.0;
     material.fibre_direction = Vec3(3.0, 1.0, -2.0);

@@ -17,9 +17,7 @@ constexpr double kTraction = 1e-3;  // kPa: small strain
 double rise_of_cooks_membrane(MaterialModel law, VolumeTreatment volume, int n) {
   TetMesh mesh = make_block(Vec3::Ones(), {n, n, 1});
   for (Vec3& p : mesh.vertices) p = Vec3(48.0 * p[0], 44.0 * p[0] + p[1] * (44.0 - 28.0 * p[0]), 48.0 / n * p[2]);
-  Material material;
-  material.model = law;
-  material.volume = volume;
+  Material material{.model = law, .volume = volume};
   const Region everywhere = BoxRegion{bounding_box(mesh.vertices)};
   const TissueModel model =
       make_tissue_model(std::move(mesh), material,

@@ -37,9 +37,7 @@ std::string refusal(const TetMesh& mesh, const MaterialField& field) {
 /// A bar of which the half beyond x = 10 is ten times stiffer, pulled by 0.2 mm: springs in a row share 10 to 1.
 TEST(MaterialField, MakesATumourTenTimesStiffer) {
   for (const auto law : {MaterialModel::Corotational, MaterialModel::StableNeoHookean}) {
-    Material material;
-    material.model = law;
-    material.poissons_ratio = 0.0;
+    Material material{.model = law, .poissons_ratio = 0.0};
     TetMesh mesh = make_block(Vec3(20, 6, 6), {4, 1, 1});
     DataArray stiffness{1, {}};
     for (const Tet& tet : mesh.tets) stiffness.values.push_back(centre(mesh, tet)[0] > 10.0 ? 700.0 : 70.0);
@@ -75,8 +73,7 @@ TEST(MaterialField, GivesEveryTetItsOwnPoissonsRatio) {
 /// Stretched along x, only those tets whose own fibres run along x are stressed by them.
 TEST(MaterialField, GivesEveryTetItsOwnFibres) {
   const TetMesh mesh = irregular_block(Vec3(20, 12, 9), {2, 2, 2}, 0.2, 7);
-  Material material;
-  material.fibre_modulus_kpa = 100.0;
+  Material material{.fibre_modulus_kpa = 100.0};
   MaterialField field;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t)
     field.fibre_directions.push_back(t % 2 == 0 ? Vec3(5, 0, 0) : Vec3(0, 0, 0.1));
@@ -112,8 +109,7 @@ TEST(MaterialField, NamesEveryViolation) {
 
 TEST(MaterialField, IsRefusedWithTheReasonWhenAModelIsMade) {
   const TetMesh mesh = make_block(Vec3(2, 1, 1), {2, 1, 1});
-  MaterialField field;
-  field.youngs_modulus_kpa = {70.0};
+  MaterialField field{.youngs_modulus_kpa = {70.0}};
   EXPECT_THAT(refusal(mesh, field), HasSubstr("found 1 items, expected one for each of 12 tets"));
   field.youngs_modulus_kpa.assign(12, 70.0);
   EXPECT_EQ(refusal(mesh, field), "accepted");

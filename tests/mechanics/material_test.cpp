@@ -62,8 +62,7 @@ TEST(Material, StiffnessAndDensityHaveARange) {
     material.youngs_modulus_kpa = e;
     EXPECT_THAT(sentences(problems_of(material)), ElementsAre(HasSubstr("expected a number in [1e-06, 1000000000]")))
         << e;
-    MaterialField field;
-    field.youngs_modulus_kpa = {70.0, e};
+    MaterialField field{.youngs_modulus_kpa = {70.0, e}};
     EXPECT_THAT(sentences(validate(field, 2)), ElementsAre(HasSubstr("expected a number in [1e-6, 1e9] kPa"))) << e;
   }
   for (const double e : {1e-6, 1e9}) {

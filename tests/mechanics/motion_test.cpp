@@ -37,9 +37,7 @@ double kinetic_energy_uj(const TissueModel& model, const Motion& motion) {
 
 /// A clamped block that hangs in gravity.
 TissueModel heavy_block() {
-  Material material;
-  material.youngs_modulus_kpa = 5.0;
-  material.poissons_ratio = 0.4;
+  Material material{.youngs_modulus_kpa = 5.0, .poissons_ratio = 0.4};
   return make_tissue_model(testing::irregular_block(Vec3(20, 12, 9), {4, 3, 3}, 0.2, 7), material,
                            {FixedConstraint{plane_x(0.0)}}, Vec3(0, 0, -9810));
 }
@@ -48,8 +46,7 @@ TEST(AdvanceMotion, LetsAFreeBodyFallExactlyAsImplicitEulerDoes) {
   TissueModel model = heavy_block();
   for (auto& axes : model.is_fixed) axes = {false, false, false};
   Motion motion = motion_at_rest(model, rest_state(model));
-  MotionSettings settings;
-  settings.step_s = 0.004;
+  MotionSettings settings{.step_s = 0.004};
   constexpr int kSteps = 5;
   step(model, motion, settings, kSteps);
   // v_n = g h n and x_n = g h² n (n + 1) / 2.
@@ -62,17 +59,13 @@ TEST(AdvanceMotion, LetsAFreeBodyFallExactlyAsImplicitEulerDoes) {
 }
 
 TEST(AdvanceMotion, NeverGainsEnergy) {
-  Material material;
-  material.poissons_ratio = 0.45;
+  Material material{.poissons_ratio = 0.45};
   const TissueModel model =
       make_tissue_model(make_block(Vec3(20, 6, 6), {6, 2, 2}), material, {FixedConstraint{plane_x(0.0)}});
   TissueState stretched = rest_state(model);
   for (Vec3& p : stretched.positions) p.x() *= 1.15;
   Motion motion = motion_at_rest(model, stretched);
-  MotionSettings settings;
-  settings.step_s = 2e-4;
-  settings.max_newton_iterations = 20;
-  settings.relative_tolerance = 1e-9;
+  MotionSettings settings{.step_s = 2e-4, .max_newton_iterations = 20, .relative_tolerance = 1e-9};
   const double start = elastic_energy_uj(model, motion.tissue);
   double before = start;
   for (int i = 0; i < 60; ++i) {
@@ -87,16 +80,14 @@ TEST(AdvanceMotion, NeverGainsEnergy) {
 
 TEST(AdvanceMotion, SwingsWithThePeriodOfABar) {
   // A bar without lateral contraction, fixed at one end: T = 4 L sqrt(rho / E).
-  Material material;
-  material.poissons_ratio = 0.0;
+  Material material{.poissons_ratio = 0.0};
   const TissueModel model =
       make_tissue_model(make_block(Vec3(20, 2, 2), {16, 1, 1}), material, {FixedConstraint{plane_x(0.0)}});
   const double period = 4.0 * 20.0 * std::sqrt(1040e-9 / 70.0);
   TissueState pulled = rest_state(model);
   for (Vec3& p : pulled.positions) p.x() += 0.2 * std::sin(std::numbers::pi * p.x() / 40.0);  // the first mode
   Motion motion = motion_at_rest(model, pulled);
-  MotionSettings settings;
-  settings.step_s = period / 800.0;
+  MotionSettings settings{.step_s = period / 800.0};
   Workers workers(1);
   MotionWorkspace workspace(model, settings);
   std::vector<double> crossings;
@@ -119,8 +110,7 @@ TEST(AdvanceMotion, MatchesTheClosedFormOfADampedStepForOneDegreeOfFreedom) {
   for (Vec3& load : model.dead_load_mn) load = Vec3::Zero();
   Motion motion = motion_at_rest(model, rest_state(model));
   motion.velocities_mm_s.assign(motion.velocities_mm_s.size(), Vec3(0, 0, 50));
-  MotionSettings settings;
-  settings.rayleigh_alpha = 20.0;
+  MotionSettings settings{.rayleigh_alpha = 20.0};
   step(model, motion, settings, 3);
   for (const Vec3& v : motion.velocities_mm_s) EXPECT_NEAR(v.z(), 50.0 / std::pow(1.0 + 0.01 * 20.0, 3), 1e-9);
 }
@@ -129,9 +119,7 @@ TEST(AdvanceMotion, StiffnessDampingBringsABodyToRestSooner) {
   const TissueModel model = heavy_block();
   const auto energy_after = [&](double beta) {
     Motion motion = motion_at_rest(model, rest_state(model));
-    MotionSettings settings;
-    settings.step_s = 1e-3;
-    settings.rayleigh_beta = beta;
+    MotionSettings settings{.step_s = 1e-3, .rayleigh_beta = beta};
     step(model, motion, settings, 40);
     return kinetic_energy_uj(model, motion);
   };
@@ -143,9 +131,7 @@ TEST(AdvanceMotion, DampingIsTheSameForceInEveryNewtonIteration) {
   TissueModel model = clamped_block();
   TissueState state = rest_state(model);
   for (Vec3& p : state.positions) p.x() *= 1.0001;
-  MotionSettings settings;
-  settings.rayleigh_beta = 0.1;
-  settings.relative_tolerance = 1e-10;
+  MotionSettings settings{.rayleigh_beta = 0.1, .relative_tolerance = 1e-10};
   Motion one = motion_at_rest(model, state);
   step(model, one, settings);
   settings.max_newton_iterations = 5;
@@ -168,9 +154,7 @@ TEST(AdvanceMotion, QuasiStaticStepsEndInStaticEquilibrium) {
   Monitor monitor;
   const StaticResult expected = solve_static(model, {}, workers, monitor);
   ASSERT_EQ(expected.outcome, Outcome::Success);
-  MotionSettings settings;
-  settings.has_inertia = false;
-  settings.max_newton_iterations = 30;
+  MotionSettings settings{.has_inertia = false, .max_newton_iterations = 30};
   Motion motion = motion_at_rest(model, rest_state(model));
   step(model, motion, settings);
   for (std::size_t v = 0; v < model.mesh.vertices.size(); ++v) {
@@ -180,16 +164,12 @@ TEST(AdvanceMotion, QuasiStaticStepsEndInStaticEquilibrium) {
 
 TEST(AdvanceMotion, ViscousTissueLetsGoOfItsStressAtTheRateOfItsTerm) {
   // A bar that cannot contract: its modulus 4/3 mu + K falls with mu alone, by one exponential.
-  Material material;
-  material.poissons_ratio = 0.3;
-  material.prony = {{1.0, 0.1}};
+  Material material{.poissons_ratio = 0.3, .prony = {{1.0, 0.1}}};
   const Region everywhere = BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(21, 7, 7))};
   const TissueModel model = make_tissue_model(make_block(Vec3(20, 6, 6), {4, 2, 2}), material,
                                               {FixedConstraint{plane_x(0.0)}, FixedConstraint{plane_x(20.0)},
                                                FixedConstraint{everywhere, {false, true, true}}});
-  MotionSettings settings;
-  settings.has_inertia = false;
-  settings.max_newton_iterations = 20;
+  MotionSettings settings{.has_inertia = false, .max_newton_iterations = 20};
   Motion motion = motion_at_rest(model, rest_state(model));
   const std::vector<VertexId> end = select(model.mesh, plane_x(20.0));
   settings.step_s = 1e-3;  // far below the relaxation time: a sudden pull by 0.2 mm
@@ -220,8 +200,7 @@ TEST(AdvanceMotion, HeldAxesMoveAsFastAsTheirHolder) {
   const TissueModel model = clamped_block();
   Motion motion = motion_at_rest(model, rest_state(model));
   for (const VertexId v : select(model.mesh, plane_x(0.0))) motion.velocities_mm_s[v.index()] = Vec3(0, 3, 0);
-  MotionSettings settings;
-  settings.has_inertia = false;
+  MotionSettings settings{.has_inertia = false};
   step(model, motion, settings, 4);
   for (std::size_t v = 0; v < model.mesh.vertices.size(); ++v) {  // the whole body goes along
     EXPECT_LT((motion.tissue.positions[v] - model.mesh.vertices[v] - Vec3(0, 0.12, 0)).norm(), 1e-5);
@@ -268,9 +247,7 @@ TEST(AdvanceMotion, SolversAgree) {
   const TissueModel model = heavy_block();
   Motion direct = motion_at_rest(model, rest_state(model));
   Motion iterated = direct;
-  MotionSettings settings;
-  settings.relative_tolerance = 1e-10;
-  settings.solver = LinearSolver::Cholesky;
+  MotionSettings settings{.relative_tolerance = 1e-10, .solver = LinearSolver::Cholesky};
   EXPECT_EQ(step(model, direct, settings, 5).linear_iterations, 0);
   settings.solver = LinearSolver::ConjugateGradients;
   EXPECT_GT(step(model, iterated, settings, 5).linear_iterations, 5);
@@ -282,9 +259,7 @@ TEST(AdvanceMotion, SolversAgree) {
 TEST(AdvanceMotion, LeavesTheMotionAloneWhenItDoesNotConverge) {
   const TissueModel model = heavy_block();
   Motion motion = motion_at_rest(model, rest_state(model));
-  MotionSettings settings;
-  settings.solver = LinearSolver::ConjugateGradients;
-  settings.max_cg_iterations = 2;
+  MotionSettings settings{.solver = LinearSolver::ConjugateGradients, .max_cg_iterations = 2};
   Workers workers(1);
   MotionWorkspace workspace(model, settings);
   EXPECT_EQ(advance_motion(model, motion, settings, workspace, workers).outcome, Outcome::NotConverged);
@@ -296,16 +271,13 @@ TEST(AdvanceMotion, GivesWayToCholeskyWhenLeftToChoose) {
   const TissueModel model = make_tissue_model(make_block(Vec3(30, 30, 15), {17, 17, 10}), {},
                                               {FixedConstraint{plane_x(0.0)}}, Vec3(0, 0, -9810));
   Motion motion = motion_at_rest(model, rest_state(model));
-  MotionSettings settings;
-  settings.has_inertia = false;
-  settings.max_cg_iterations = 3;
+  MotionSettings settings{.has_inertia = false, .max_cg_iterations = 3};
   EXPECT_EQ(step(model, motion, settings).linear_iterations, 3);
 }
 
 TEST(AdvanceMotion, RefusesSettingsOutOfRange) {
   const TissueModel model = clamped_block();
-  MotionSettings settings;
-  settings.step_s = 0.0;
+  MotionSettings settings{.step_s = 0.0};
   EXPECT_THROW(MotionWorkspace(model, settings), InvalidArgument);
   settings = {};
   settings.rayleigh_beta = -1.0;

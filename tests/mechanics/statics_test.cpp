@@ -43,8 +43,7 @@ TEST(SolveStatic, StretchesBy20MmFromRestInOneLoadStep) {
 }
 
 TEST(SolveStatic, ConvergesQuadraticallyNearTheSolution) {
-  StaticSettings settings;
-  settings.relative_tolerance = 1e-10;
+  StaticSettings settings{.relative_tolerance = 1e-10};
   const StaticResult result = solve(pulled_block(20.0), settings);
   ASSERT_EQ(result.outcome, Outcome::Success);
   const auto& history = result.residual_history;
@@ -157,8 +156,7 @@ TEST(SolveStatic, AnUnloadedBodyStaysAtRest) {
 
 TEST(SolveStatic, SmallerLoadStepsEndInTheSamePlace) {
   const TissueModel model = pulled_block(20.0, {10, 5, 4}, Vec3(0, 0, -9810));
-  StaticSettings small;
-  small.first_load_fraction = 0.25;
+  StaticSettings small{.first_load_fraction = 0.25};
   const StaticResult one = solve(model);
   const StaticResult many = solve(model, small);
   ASSERT_EQ(many.outcome, Outcome::Success);
@@ -187,9 +185,7 @@ TEST(SolveStatic, GivesTheSameBitsAtAnyThreadCount) {
 
 TEST(SolveStatic, ConjugateGradientsEndInTheSamePlaceAsCholesky) {
   const TissueModel model = pulled_block(20.0, {10, 5, 4}, Vec3(0, 0, -9810));
-  StaticSettings settings;
-  settings.relative_tolerance = 1e-8;
-  settings.solver = LinearSolver::Cholesky;
+  StaticSettings settings{.relative_tolerance = 1e-8, .solver = LinearSolver::Cholesky};
   const StaticResult direct = solve(model, settings);
   settings.solver = LinearSolver::ConjugateGradients;
   const StaticResult iterated = solve(model, settings);
@@ -213,8 +209,7 @@ TEST(SolveStatic, ChoosesTheSolverByTheSizeOfTheBodyAndSaysSo) {
 
 TEST(SolveStatic, ConjugateGradientsGiveTheSameBitsAtAnyThreadCount) {
   const TissueModel model = pulled_block(20.0, {12, 7, 5});
-  StaticSettings settings;
-  settings.solver = LinearSolver::ConjugateGradients;
+  StaticSettings settings{.solver = LinearSolver::ConjugateGradients};
   const StaticResult one = solve(model, settings, 1);
   EXPECT_EQ(solve(model, settings, 2).state.positions, one.state.positions);
 }
@@ -229,8 +224,7 @@ TEST(SolveStatic, ReportsEveryIterationAndNeverTakesProgressBack) {
   };
   Listener listener;
   Workers workers(1);
-  StaticSettings settings;
-  settings.first_load_fraction = 0.5;
+  StaticSettings settings{.first_load_fraction = 0.5};
   const StaticResult result = solve_static(pulled_block(20.0), settings, workers, listener);
   ASSERT_EQ(result.outcome, Outcome::Success);
   EXPECT_EQ(listener.texts.size(), result.residual_history.size());
@@ -239,8 +233,7 @@ TEST(SolveStatic, ReportsEveryIterationAndNeverTakesProgressBack) {
 }
 
 TEST(SolveStatic, SaysWhenItDidNotConverge) {
-  StaticSettings settings;
-  settings.max_newton_iterations = 2;
+  StaticSettings settings{.max_newton_iterations = 2};
   const StaticResult result = solve(pulled_block(20.0), settings);
   EXPECT_EQ(result.outcome, Outcome::NotConverged);
   EXPECT_EQ(result.iterations, 2);
@@ -268,8 +261,7 @@ TEST(SolveStatic, StopsWhenAsked) {
 }
 
 TEST(SolveStatic, RefusesSettingsOutOfRange) {
-  StaticSettings settings;
-  settings.first_load_fraction = 0.0;
+  StaticSettings settings{.first_load_fraction = 0.0};
   EXPECT_THROW(solve(pulled_block(1.0), settings), InvalidArgument);
   settings = {};
   settings.relative_tolerance = -1.0;
@@ -277,8 +269,7 @@ TEST(SolveStatic, RefusesSettingsOutOfRange) {
 }
 
 TEST(VonMises, IsTheStressOfAUniaxialPull) {
-  Material material;
-  material.poissons_ratio = 0.3;
+  Material material{.poissons_ratio = 0.3};
   const TissueModel model = make_tissue_model(
       make_block(Vec3(20, 10, 10), {4, 2, 2}), material,
       {FixedConstraint{plane_x(0.0), {true, false, false}},

@@ -168,8 +168,7 @@ INSTANTIATE_TEST_SUITE_P(EveryInstructionSet, KeptStiffness, ::testing::Values(I
 
 /// Tissue of another law has no kept part: each step gives the matrix of that step.
 TEST(StepStiffness, AssemblesOtherLawsAnewInEachStep) {
-  Material material;
-  material.model = MaterialModel::StableNeoHookean;
+  Material material{.model = MaterialModel::StableNeoHookean};
   const TissueModel model =
       make_tissue_model(make_block(Vec3(20, 12, 9), {4, 3, 2}), material, {FixedConstraint{testing::plane_x(0.0)}});
   TissueState state = rest_state(model);
@@ -186,9 +185,7 @@ TEST(StepStiffness, AssemblesOtherLawsAnewInEachStep) {
 
 /// Of viscous tissue, steps that take time have the elastic and the viscous response, others the elastic one alone.
 TEST(StepStiffness, AddsTheViscousResponseInAStepThatTakesTime) {
-  Material material;
-  material.prony = {{1.5, 0.3}};
-  material.kelvin_voigt_time_s = 0.01;
+  Material material{.prony = {{1.5, 0.3}}, .kelvin_voigt_time_s = 0.01};
   const TissueModel model =
       make_tissue_model(make_block(Vec3(20, 12, 9), {6, 5, 4}), material, {FixedConstraint{testing::plane_x(0.0)}});
   TissueState state = shaken(model, 0.3, 3);

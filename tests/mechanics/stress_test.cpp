@@ -44,10 +44,7 @@ TEST(VonMises, FollowsFromTheEnergyForEveryLaw) {
   for (const auto law : {MaterialModel::Corotational, MaterialModel::StableNeoHookean}) {
     for (const auto volume : {VolumeTreatment::PerTet, VolumeTreatment::Averaged}) {
       for (const double fibre_modulus : {0.0, 50.0}) {
-        Material material;
-        material.model = law;
-        material.volume = volume;
-        material.fibre_modulus_kpa = fibre_modulus;
+        Material material{.model = law, .volume = volume, .fibre_modulus_kpa = fibre_modulus};
         material.fibre_direction = Vec3::UnitX();  // a principal direction: the stress has no shear
         const TissueModel model = stressed_block(material);
         const Vec3 stretch(1.3, 0.85, 0.95);
@@ -60,8 +57,7 @@ TEST(VonMises, FollowsFromTheEnergyForEveryLaw) {
 }
 
 TEST(VonMises, IsZeroUnderPressureAlone) {
-  Material material;
-  material.model = MaterialModel::StableNeoHookean;
+  Material material{.model = MaterialModel::StableNeoHookean};
   const TissueModel model = stressed_block(material);
   for (const double found : von_mises_kpa(model, mapped(model, 0.9 * some_rotation()))) EXPECT_LT(found, 1e-10);
 }

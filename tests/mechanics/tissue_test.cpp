@@ -88,12 +88,10 @@ TEST(TissueModel, RefusesAnUnsoundMesh) {
 }
 
 TEST(TissueModel, NamesTheMaterialFieldThatIsOutOfRange) {
-  Material negative;
-  negative.youngs_modulus_kpa = -1.0;
+  Material negative{.youngs_modulus_kpa = -1.0};
   EXPECT_EQ(refusal([&] { static_cast<void>(block({kClamp}, negative)); }).first,
             "specimen.material.youngs_modulus_kpa");
-  Material incompressible;
-  incompressible.poissons_ratio = 0.5;
+  Material incompressible{.poissons_ratio = 0.5};
   const auto [field, message] = refusal([&] { static_cast<void>(block({kClamp}, incompressible)); });
   EXPECT_EQ(field, "specimen.material.poissons_ratio");
   EXPECT_THAT(message, HasSubstr("found 0.5, expected a number in [0, 0.5)"));
@@ -152,9 +150,7 @@ TEST(TissueModel, RefusesLoadsWhoseForceIsNotFiniteAndDisplacementsFarBeyondTheB
   EXPECT_EQ(traction.first, "specimen.constraints[1].traction_kpa");
   EXPECT_THAT(traction.second, HasSubstr("1e+308"));
   EXPECT_EQ(refusal([] {
-              Material heavy;
-              heavy.density_kg_m3 = 1e9;
-              heavy.youngs_modulus_kpa = 1e9;
+              Material heavy{.youngs_modulus_kpa = 1e9, .density_kg_m3 = 1e9};
               static_cast<void>(block({kClamp}, heavy, Vec3(0, 0, -1e308)));
             }).first,
             "specimen.gravity_mm_s2");

@@ -25,8 +25,7 @@ TissueModel block(const Material& material) {
 }
 
 Material with_prony(std::vector<PronyTerm> terms) {
-  Material material;
-  material.prony = std::move(terms);
+  Material material{.prony = std::move(terms)};
   return material;
 }
 
@@ -128,8 +127,7 @@ TEST(Viscosity, ConvergesWithTheSquareOfTheStep) {
 }
 
 TEST(Viscosity, OfKelvinAndVoigtIsProportionalToTheRateOfStrain) {
-  Material material;
-  material.kelvin_voigt_time_s = 0.3;
+  Material material{.kelvin_voigt_time_s = 0.3};
   const TissueModel model = block(material);
   TissueState state = rest_state(model);
   map(model, state, stretched(0.05));

@@ -134,8 +134,7 @@ TEST_F(Converge, APathThatWouldCrossItselfIsShortened) {
   const ConvergedCompensation result =
       compensate_converging(path, surface,
                             [&](const ToolPath& cut) {
-                              PathErrors errors;
-                              errors.places = entry_contour(cut).points;
+                              PathErrors errors{.places = entry_contour(cut).points};
                               errors.signed_error_mm.assign(errors.places.size(), -4.9);
                               return std::optional(errors);
                             },
@@ -305,9 +304,7 @@ TEST_F(Converge, GoesOnWhileTheVerdictIsAgainstTheNearestPass) {
     ++cuts;
     return errors;
   };
-  ConvergenceSettings settings;
-  settings.more_simulations = 2;
-  settings.tolerance_mm = 0.15;
+  ConvergenceSettings settings{.more_simulations = 2, .tolerance_mm = 0.15};
   const ConvergedCompensation result = compensate_converging(path_, surface_, sound_at_last, settings);
   EXPECT_EQ(result.outcome, CompensationOutcome::Converged) << to_string(result.outcome);
   ASSERT_EQ(result.passes.size(), 3U);
@@ -326,9 +323,7 @@ TEST_F(Converge, MendsTheNearestRingWhereNoneCloses) {
       errors.is_success = errors.open_layers == 0;
       return errors;
     };
-    ConvergenceSettings settings;
-    settings.more_simulations = 2;
-    settings.tolerance_mm = 1e-3;
+    ConvergenceSettings settings{.more_simulations = 2, .tolerance_mm = 1e-3};
     const ConvergedCompensation result = compensate_converging(path_, surface_, closes_at_last, settings);
     EXPECT_EQ(result.result().is_success, open == 1);
     EXPECT_EQ(result.passes.size() > 4, open == 1);

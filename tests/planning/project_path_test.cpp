@@ -170,8 +170,7 @@ TEST(ProjectPath, RefusesAPathBesideOrFarFromTheSurface) {
 TEST(ProjectPath, TakesAMeshAsItIs) {
   const Mat4 T = registration();
   const ToolPath path = simulated(T.inverse());
-  TriMesh mesh;
-  mesh.vertices = {Vec3(-50, -50, 15), Vec3(50, -50, 15), Vec3(50, 50, 15), Vec3(-50, 50, 15)};
+  TriMesh mesh{.vertices = {Vec3(-50, -50, 15), Vec3(50, -50, 15), Vec3(50, 50, 15), Vec3(-50, 50, 15)}};
   // Turned the wrong way round on purpose: an open mesh has no outside.
   mesh.triangles = {{VertexId(0), VertexId(2), VertexId(1)}, {VertexId(0), VertexId(3), VertexId(2)}};
   const MeasuredSurface surface(mesh, approach_of(path, T));

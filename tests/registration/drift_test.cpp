@@ -48,10 +48,7 @@ double variance_after_a_step(const Points& source, const Points& target, const D
 TEST_F(Fixtures, OneStepOnTheFishGivesThePublishedVariance) {
   const Points fish = read_rows(gadomski_ / "fish.csv");
   const Points distorted = read_rows(gadomski_ / "fish_distorted.csv");
-  DriftSettings settings;
-  settings.dimensions = 2;
-  settings.outlier_weight = 0.1;
-  settings.scale = ScaleRange::fixed();
+  DriftSettings settings{.scale = ScaleRange::fixed(), .outlier_weight = 0.1, .dimensions = 2};
   EXPECT_NEAR(variance_after_a_step(distorted, fish, settings), 0.52384, 5e-5);
   settings.scale = ScaleRange::free();
   EXPECT_NEAR(variance_after_a_step(distorted, fish, settings), 0.4072, 5e-4);
@@ -60,8 +57,7 @@ TEST_F(Fixtures, OneStepOnTheFishGivesThePublishedVariance) {
 TEST_F(Fixtures, AFishTurnedBy20DegreesComesBack) {
   const Points fish = scaled(read_rows(gadomski_ / "fish.csv"), 10.0);
   const Mat3 turn = rotation_of({0.0, 0.0, units::rad_from_deg(20.0)});
-  DriftSettings settings;
-  settings.dimensions = 2;
+  DriftSettings settings{.dimensions = 2};
   const CoherentPointDrift drift = rigid_drift(moved({1.0, turn}, fish), fish, {}, settings, workers_, silent);
   EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
   EXPECT_LT((drift.T_target_source.rotation - turn.transpose()).norm(), 1e-4);
@@ -69,8 +65,7 @@ TEST_F(Fixtures, AFishTurnedBy20DegreesComesBack) {
 
 TEST_F(Fixtures, AFishTenTimesTheSizeHasScaleTen) {
   const Points fish = read_rows(gadomski_ / "fish.csv");
-  DriftSettings settings;
-  settings.dimensions = 2;
+  DriftSettings settings{.dimensions = 2};
   const CoherentPointDrift drift = rigid_drift(fish, scaled(fish, 10.0), {}, settings, workers_, silent);
   EXPECT_NEAR(drift.T_target_source.scale, 10.0, 1e-3);
 }
@@ -94,10 +89,7 @@ class HillDrift : public ::testing::Test {
 };
 
 TEST_F(HillDrift, ClustersTruncationAndAccelerationLeaveTheFixedPointAlone) {
-  DriftSettings plain;
-  plain.coarse_to_fine = false;
-  plain.max_iterations = 3000;
-  plain.tolerance = 1e-5;
+  DriftSettings plain{.max_iterations = 3000, .tolerance = 1e-5, .coarse_to_fine = false};
   const CoherentPointDrift all = rigid_drift(source_, target_, {}, plain, workers_, silent);
   const CoherentPointDrift fast = rigid_drift(source_, target_, {}, {}, workers_, silent);
   ASSERT_EQ(all.outcome, DriftOutcome::Converged);
@@ -127,8 +119,7 @@ TEST_F(HillDrift, AnyNumberOfThreadsGivesTheSameBits) {
 }
 
 TEST_F(HillDrift, ABoundedScaleStaysInItsRange) {
-  DriftSettings settings;
-  settings.scale = {0.98, 1.02};
+  DriftSettings settings{.scale = {0.98, 1.02}};
   EXPECT_DOUBLE_EQ(rigid_drift(source_, target_, {}, settings, workers_, silent).T_target_source.scale, 1.02);
   settings.scale = ScaleRange::fixed(1.05);
   const CoherentPointDrift fixed = rigid_drift(source_, target_, {1.05}, settings, workers_, silent);
@@ -137,8 +128,7 @@ TEST_F(HillDrift, ABoundedScaleStaysInItsRange) {
 }
 
 TEST_F(HillDrift, RunningOutOfStepsIsTold) {
-  DriftSettings settings;
-  settings.max_iterations = 3;
+  DriftSettings settings{.max_iterations = 3};
   const CoherentPointDrift drift = rigid_drift(source_, target_, {}, settings, workers_, silent);
   EXPECT_EQ(drift.outcome, DriftOutcome::IterationLimit);
   EXPECT_EQ(drift.iterations, 3);
@@ -167,8 +157,7 @@ TEST(RigidDrift, RefusesEmptyCloudsAndNumbersThatAreNone) {
   EXPECT_THROW(static_cast<void>(rigid_drift({}, good, {}, {}, workers, silent)), InvalidArgument);
   const Points bad{Vec3::Zero(), Vec3(0.0, std::nan(""), 0.0), Vec3::UnitY()};
   EXPECT_THROW(static_cast<void>(rigid_drift(good, bad, {}, {}, workers, silent)), InvalidArgument);
-  DriftSettings settings;
-  settings.outlier_weight = 1.0;
+  DriftSettings settings{.outlier_weight = 1.0};
   EXPECT_THROW(static_cast<void>(rigid_drift(good, good, {}, settings, workers, silent)), InvalidArgument);
 }
 

@@ -18,8 +18,7 @@ TEST(NonrigidDrift, BendsTheDistortedFishOntoTheFish) {
   const Points fish = testing::read_rows(folder / "fish.csv");
   const Points distorted = testing::read_rows(folder / "fish_distorted.csv");
   Workers workers(1);
-  NonrigidSettings settings;
-  settings.dimensions = 2;
+  NonrigidSettings settings{.dimensions = 2};
   const NonrigidDrift drift = nonrigid_drift(distorted, fish, settings, workers, silent);
   EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
   const NeighbourSearch search(fish);
@@ -37,8 +36,7 @@ TEST(NonrigidDrift, TakesAwayASmoothSettlingAndLittleElse) {
   const auto dip = [](const Vec3& p) { return 1.5 * std::exp(-p.head<2>().squaredNorm() / 300.0); };
   Points target;
   for (const Vec3& p : testing::hill(1500, random).points) target.emplace_back(p - dip(p) * Vec3::UnitZ());
-  NonrigidSettings settings;
-  settings.first_sigma = 0.1;
+  NonrigidSettings settings{.first_sigma = 0.1};
   const NonrigidDrift drift = nonrigid_drift(source, target, settings, workers, silent);
   EXPECT_EQ(drift.outcome, DriftOutcome::Converged);
   double before = 0.0;
@@ -58,16 +56,14 @@ TEST(NonrigidDrift, CloudsThatLieOnEachOtherStay) {
   Random random(6);
   Workers workers(1);
   const Points source = testing::hill(500, random).points;
-  NonrigidSettings settings;
-  settings.first_sigma = 0.05;
+  NonrigidSettings settings{.first_sigma = 0.05};
   EXPECT_LT(nonrigid_drift(source, source, settings, workers, silent).largest_move_mm, 0.01);
 }
 
 TEST(NonrigidDrift, RefusesSettingsOutOfRange) {
   Workers workers(1);
   const Points points{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()};
-  NonrigidSettings settings;
-  settings.stiffness = 0.0;
+  NonrigidSettings settings{.stiffness = 0.0};
   EXPECT_THROW(static_cast<void>(nonrigid_drift(points, points, settings, workers, silent)), InvalidArgument);
 }
 

@@ -156,8 +156,7 @@ TEST_F(RegisterClouds, AMirrorImageIsNeverAReflectionAndIsFlagged) {
 
 TEST_F(RegisterClouds, AMirrorImageIsOneWhereTheWrongShapeDoesNotComeToRestToo) {
   const PointCloud source = hill(2000, random_);
-  RegistrationSettings hasty;
-  hasty.max_iterations = 5;
+  RegistrationSettings hasty{.max_iterations = 5};
   const Registration found = run(source, mirrored(hill(2000, random_, 0.1)), hasty);
   EXPECT_THAT(found.reasons, Contains(HasSubstr("still moving")));
   EXPECT_EQ(found.outcome, RegistrationOutcome::Mirrored);
@@ -172,8 +171,7 @@ TEST_F(RegisterClouds, AMirrorImageIsKnownFromAStartNearTheWrongPoseToo) {
     cloud->normals.clear();
     *cloud = with_normals(std::move(*cloud), -Vec3::UnitZ(), 12, workers_);
   }
-  RegistrationSettings near;
-  near.start = Similarity{};
+  RegistrationSettings near{.start = Similarity{}};
   const Registration proper = run(source, target, near);
   EXPECT_EQ(proper.outcome, RegistrationOutcome::Converged) << (proper.reasons.empty() ? "" : proper.reasons.front());
   EXPECT_TRUE(proper.is_handedness_determined);
@@ -214,8 +212,7 @@ TEST_F(RegisterClouds, TwoPartsOfASymmetricShapeAreNoMirrorImages) {
   }
   source = crop(source, Box3(Vec3(-50.0, -50.0, -50.0), Vec3(kHalfStripMm, 50.0, 50.0)));
   target = crop(target, Box3(Vec3(-kHalfStripMm, -50.0, -50.0), Vec3(50.0, 50.0, 50.0)));
-  RegistrationSettings near;
-  near.start = Similarity{};
+  RegistrationSettings near{.start = Similarity{}};
   const Registration found = run(source, target, near);
   EXPECT_LT(rms_difference_mm(found.T_target_source, Similarity{}, source.points), 0.4);
   EXPECT_LT(found.score, 0.95 * found.mirror_score) << "what used to be taken for a mirror image";
@@ -231,8 +228,7 @@ TEST_F(RegisterClouds, TellsWhenTheScaleIsUnlikely) {
   EXPECT_NEAR(found.T_target_source.scale, 1.08, 0.005);
   EXPECT_TRUE(found.is_scale_suspicious);
   EXPECT_THAT(found.reasons, Contains(HasSubstr("outside 0.95 to 1.05")));
-  RegistrationSettings narrow;
-  narrow.scale = {0.97, 1.03};
+  RegistrationSettings narrow{.scale = {0.97, 1.03}};
   const Registration held = run(source, moved_cloud(truth, hill(1500, random_, 0.1)), narrow);
   EXPECT_TRUE(held.scale_at_limit);
   EXPECT_NE(held.outcome, RegistrationOutcome::Converged);
@@ -303,8 +299,7 @@ TEST_F(RegisterClouds, RefusesEmptyCloudsAndNumbersThatAreNone) {
   PointCloud bad = good;
   bad.points[7].y() = std::nan("");
   EXPECT_THROW(static_cast<void>(run(bad, good)), InvalidArgument);
-  RegistrationSettings settings;
-  settings.rotations = 1;
+  RegistrationSettings settings{.rotations = 1};
   EXPECT_THROW(static_cast<void>(run(good, good, settings)), InvalidArgument);
 }
 
@@ -343,8 +338,7 @@ PointCloud hill_with_bumps(std::size_t count, std::uint64_t seed, double height_
 TEST(OtherShape, IsNoSuccessAndTheSameShapeWithItsNoiseIsOne) {
   Random random(31);
   Workers workers(2);
-  RegistrationSettings settings;
-  settings.start = Similarity{};
+  RegistrationSettings settings{.start = Similarity{}};
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const PointCloud source = hill(2500, random);
     for (const double height_mm : {0.0, 0.4}) {
@@ -365,9 +359,7 @@ TEST(Settling, ADipIsNotTakenForAShiftWhereSettlingIsLookedFor) {
   Workers workers(2);
   const PointCloud source = testing::hill(2500, random);
   PointCloud target = with_normals(dipped_hill(4000, random), -Vec3::UnitZ(), 16, workers);
-  RegistrationSettings settings;
-  settings.scale = ScaleRange::fixed();
-  settings.start = Similarity{};
+  RegistrationSettings settings{.scale = ScaleRange::fixed(), .start = Similarity{}};
   const Registration rigid = register_clouds(source, target, settings, workers, silent);
   settings.settling_mm = 1.0;
   const Registration settled = register_clouds(source, target, settings, workers, silent);
@@ -383,9 +375,7 @@ TEST(Settling, ADipIsNotTakenForAShiftWhereSettlingIsLookedFor) {
 
 TEST(Settling, IsNotSuspectedWhereNothingHasSettled) {
   Workers workers(2);
-  RegistrationSettings settings;
-  settings.scale = ScaleRange::fixed();
-  settings.start = Similarity{};
+  RegistrationSettings settings{.scale = ScaleRange::fixed(), .start = Similarity{}};
   for (const int seed : {1, 2, 3, 4}) {
     Random random(seed);
     const PointCloud source = testing::hill(2500, random);
@@ -404,9 +394,7 @@ TEST(Settling, WhatItLeavesOpenIsInTheWeakestMotionToo) {
   Workers workers(2);
   const PointCloud source = testing::hill(2500, random);
   const PointCloud target = with_normals(dipped_hill(4000, random), -Vec3::UnitZ(), 16, workers);
-  RegistrationSettings settings;
-  settings.start = Similarity{};
-  settings.scale = ScaleRange::fixed();
+  RegistrationSettings settings{.scale = ScaleRange::fixed(), .start = Similarity{}};
   double before_mm = 0.0;
   for (const double settling_mm : {1.0, 3.0, 8.0}) {
     settings.settling_mm = settling_mm;
@@ -426,10 +414,7 @@ TEST(Settling, AScaleThatIsHeldAtItsLimitHasNoVarianceOfItsOwn) {
   Workers workers(2);
   const PointCloud source = testing::hill(1500, random);
   const PointCloud target = with_normals(dipped_hill(2500, random), -Vec3::UnitZ(), 16, workers);
-  RegistrationSettings settings;
-  settings.start = Similarity{1.02};
-  settings.scale = {1.02, 1.2};
-  settings.settling_mm = 1.0;
+  RegistrationSettings settings{.scale = {1.02, 1.2}, .start = Similarity{1.02}, .settling_mm = 1.0};
   const Registration held = register_clouds(source, target, settings, workers, silent);
   EXPECT_TRUE(held.scale_at_limit);
   EXPECT_EQ(held.certificate.scale_sd, 0.0);
@@ -441,9 +426,7 @@ TEST(Settling, IsFoundBitForBitOnAnyNumberOfThreads) {
   Workers three(3);
   const PointCloud source = testing::hill(800, random);
   const PointCloud target = with_normals(dipped_hill(1500, random), -Vec3::UnitZ(), 16, one);
-  RegistrationSettings settings;
-  settings.start = Similarity{};
-  settings.settling_mm = 1.0;
+  RegistrationSettings settings{.start = Similarity{}, .settling_mm = 1.0};
   const Registration a = register_clouds(source, target, settings, one, silent);
   const Registration b = register_clouds(source, target, settings, three, silent);
   EXPECT_EQ(matrix_of(a.T_target_source), matrix_of(b.T_target_source));
@@ -451,8 +434,7 @@ TEST(Settling, IsFoundBitForBitOnAnyNumberOfThreads) {
 }
 
 TEST(Settling, RefusesALengthBelowZero) {
-  RegistrationSettings settings;
-  settings.settling_mm = -1.0;
+  RegistrationSettings settings{.settling_mm = -1.0};
   EXPECT_EQ(validate(settings).size(), 1U);
 }
 

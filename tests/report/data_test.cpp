@@ -77,9 +77,7 @@ TEST(FindProblems, NamesIndicesOutOfRangeAndAZeroDirection) {
 }
 
 TEST(HtmlReport, RefusesWhatHasProblemsAndListsThem) {
-  ReportData data;
-  data.stages = {{"mesh", "done", kNan}};
-  data.checks = {{"speed", "mm/s", 1.0, "<=", kNan, true}};
+  ReportData data{.stages = {{"mesh", "done", kNan}}, .checks = {{"speed", "mm/s", 1.0, "<=", kNan, true}}};
   EXPECT_THAT(testing::refusal_of<InvalidArgument>([&] { return html_report(data); }),
               ::testing::AllOf(HasSubstr("stage mesh: wall_s"), HasSubstr("check speed: limit")));
 }

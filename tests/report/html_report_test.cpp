@@ -240,8 +240,7 @@ TEST(WriteReport, WritesThePageAndNothingWhenItIsRefused) {
   const testing::TemporaryFolder folder;
   write_report({}, folder / "report.html");
   EXPECT_EQ(read_text(folder / "report.html"), html_report({}));
-  ReportData bad;
-  bad.approach = Vec3::Zero();
+  ReportData bad{.approach = Vec3::Zero()};
   EXPECT_THROW(write_report(bad, folder / "bad.html"), InvalidArgument);
   EXPECT_FALSE(std::filesystem::exists(folder / "bad.html"));
   EXPECT_THROW(write_report({}, folder / "nowhere" / "report.html"), DataError);

@@ -90,8 +90,7 @@ ReportAnimation RingFixture::animation(const std::string& name, int steps) const
 }
 
 CtPicture RingFixture::scan() const {
-  CtPicture picture;
-  picture.caption = "A block in air.";
+  CtPicture picture{.caption = "A block in air."};
   picture.ct.grid = {.size = {140, 108, 24}, .spacing_mm = {0.5, 0.5, 1.0}, .origin_mm = {-5.0, -5.0, -5.0}};
   picture.occupancy.grid = picture.ct.grid;
   for (int k = 0; k < 24; ++k) {

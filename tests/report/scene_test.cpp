@@ -110,8 +110,7 @@ TEST(FrameFigure, SaysWhatItShowsHowLargeAndThatItIsSimulated) {
 TEST(FrameFigure, ItsScaleBarIsAsLongAsWhatItMeasures) {
   // A line of 10 mm across the line of sight, alone in the picture: it fills 92 % of the width, and so does the bar.
   const Vec3 across = Vec3(std::cos(-0.6), std::sin(-0.6), 0.0);
-  ReportAnimation animation;
-  animation.name = "line";
+  ReportAnimation animation{.name = "line"};
   animation.lines.push_back({LineKind::TumorEdge, {{Vec3::Zero(), 10.0 * across}, false}});
   animation.frames.emplace_back();
   const std::string figure = frame_figure_svg(animation, 0, -Vec3::UnitZ(), 500, 400);

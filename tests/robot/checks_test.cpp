@@ -326,8 +326,7 @@ TEST(CheckProgram, FindsAStretchedArmNextToASingularityBeforeItIsOutOfReach) {
 TEST(CheckProgram, FindsAnArmThatWouldReachBelowTheTable) {
   ToolPath path = ring_path();
   const auto settings = CheckSettings{};
-  ArmSetup setup;
-  setup.table_z_mm = 400.0;
+  ArmSetup setup{.table_z_mm = 400.0};
   EXPECT_THAT(failures(check_program(make_program(path, {}, setup), path, settings)), ::testing::Contains("table"));
 }
 

@@ -23,8 +23,7 @@ inline std::vector<std::string> failures(const ProgramChecks& checks) {
 /// straight down, 7 mm/s.
 inline ToolPath ring_path(std::size_t waypoints = 48) {
   const Vec3 center(600.0, 0.0, 100.0);
-  ToolPath path;
-  path.frame = PathFrame::Robot;
+  ToolPath path{.frame = PathFrame::Robot};
   for (std::size_t i = 0; i < waypoints; ++i) {
     const double angle = 2.0 * units::kPi * static_cast<double>(i) / static_cast<double>(waypoints);
     const Vec3 outwards(std::cos(angle), std::sin(angle), 0.0);
@@ -46,9 +45,7 @@ inline ToolPath leaning_ring() {
 
 /// A straight open cut of 20 mm along x at 100 mm height.
 inline ToolPath line_path() {
-  ToolPath path;
-  path.frame = PathFrame::Robot;
-  path.is_closed = false;
+  ToolPath path{.frame = PathFrame::Robot, .is_closed = false};
   for (int i = 0; i < 5; ++i) path.waypoints.push_back({Vec3(500.0 + 5.0 * i, 0.0, 100.0), -Vec3::UnitZ(), 5.0, 4.0});
   return path;
 }

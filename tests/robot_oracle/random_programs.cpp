@@ -22,9 +22,7 @@ ToolPath random_path(Random& random) {
   const Vec3 axis = direction_within(random, -Vec3::UnitZ(), 1.4);
   const Vec3 along =
       Eigen::AngleAxisd(random.uniform(0.0, 2.0 * units::kPi), axis).toRotationMatrix() * axis.unitOrthogonal();
-  ToolPath path;
-  path.frame = PathFrame::Robot;
-  path.is_closed = false;
+  ToolPath path{.frame = PathFrame::Robot, .is_closed = false};
   for (int i = 0; i < 4; ++i)
     path.waypoints.push_back({middle + (3.0 + random.uniform()) * i * along, axis, 5.0, 20.0});
   return path;

@@ -23,10 +23,7 @@ BrickGrid grid_of(int nx, int ny, int nz, double size_mm = 2.0) {
 BrickTissue block(int nx, int ny, int nz) {
   BrickGrid grid = grid_of(nx, ny, nz);
   const std::size_t count = grid.brick_count();
-  BrickMaterial material;
-  material.c1_kpa = kC1;
-  material.c2_kpa = kC2;
-  material.lambda_kpa = kLambda;
+  BrickMaterial material{.c1_kpa = kC1, .c2_kpa = kC2, .lambda_kpa = kLambda};
   return make_tissue(std::move(grid), std::vector<BrickMaterial>(count, material),
                      std::vector<Voxels>(count, ~Voxels{0}));
 }

@@ -39,9 +39,7 @@ CalibrationRun closed_run() {
 }
 
 CalibrationRun failed_run() {
-  CalibrationRun run;
-  run.setting = kSetting;
-  run.outcome = Outcome::OpenLoop;
+  CalibrationRun run{.setting = kSetting, .outcome = Outcome::OpenLoop};
   return run;
 }
 
@@ -49,11 +47,8 @@ CalibrationRun failed_run() {
 const std::vector<PhotographedErrors> kPhotographs{{1.8, 2.4}, {1.8, 2.4}};
 
 Calibration two_specimens() {
-  Calibration calibration;
-  calibration.method = CalibrationMethod::Paper;
-  CalibratedSpecimen first;
-  first.name = "s1";
-  first.runs = {closed_run(), closed_run()};
+  Calibration calibration{.method = CalibrationMethod::Paper};
+  CalibratedSpecimen first{.name = "s1", .runs = {closed_run(), closed_run()}};
   CalibratedSpecimen second = first;
   second.name = "s2";
   second.runs[1] = failed_run();
@@ -272,8 +267,7 @@ TEST_F(CalibrationFileTest, AFailedCellIsARowOfTheTable) {
 class PhotographedCutTest : public CalibrationFileTest {
  protected:
   static nlohmann::ordered_json evaluation_json(const Contour& incision) {
-    EvaluationSettings settings;
-    settings.contour = ContourKind::InnerEdge;
+    EvaluationSettings settings{.contour = ContourKind::InnerEdge};
     const Evaluation evaluation = evaluate(incision, testing::circle(10.0, 120), settings);
     nlohmann::ordered_json json = to_json(evaluation);
     json["points"] = points_json(evaluation);

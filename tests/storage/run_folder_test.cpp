@@ -71,17 +71,14 @@ class RunFolderTest : public ::testing::Test {
 
   TissueModel model() { return tissue_of(read().settings, *open().read_specimen_mesh(silent_)); }
   StaticResult stretched() {
-    StaticResult result;
-    result.state = rest_state(model());
+    StaticResult result{.state = rest_state(model())};
     return result;
   }
   /// Three tets, each removed for another cause, in one step.
   static SimulatedCut small_cut() {
     SimulatedCut cut;
     for (const RemovalCause cause : {RemovalCause::Dwell, RemovalCause::Tear, RemovalCause::LooseFragment}) {
-      Removal removal;
-      removal.tet = TetId(cut.incision.record.removals.size());
-      removal.cause = cause;
+      Removal removal{.tet = TetId(cut.incision.record.removals.size()), .cause = cause};
       cut.incision.record.removals.push_back(removal);
     }
     cut.incision.final_tumor_edge = testing::circle(2.0, 12, Vec3(5, 10, 5));
@@ -106,8 +103,7 @@ class RunFolderTest : public ::testing::Test {
 
 /// A cut of which every measure is there.
 SimulatedCut measured_cut() {
-  SimulatedCut cut;
-  cut.tets = 48;
+  SimulatedCut cut{.tets = 48};
   cut.incision.outcome = Outcome::Success;
   cut.incision.is_closed_loop = true;
   cut.incision.centerline = testing::circle(3.1, 40, Vec3(5, 10, 5));

@@ -26,16 +26,14 @@ std::vector<Constraint> symmetry() {
 StaticResult solve(const TissueModel& model) {
   Workers workers(1);
   Monitor monitor;
-  StaticSettings settings;
-  settings.relative_tolerance = 1e-10;
+  StaticSettings settings{.relative_tolerance = 1e-10};
   return solve_static(model, settings, workers, monitor);
 }
 
 TEST(Bar, UnderUniaxialTractionStretchesByTractionOverYoungsModulus) {
   for (const double nu : {0.0, 0.3, 0.49}) {
     for (const double traction : {0.07, 14.0, 35.0}) {  // strains of 0.1 %, 20 % and 50 %
-      Material material;
-      material.poissons_ratio = nu;
+      Material material{.poissons_ratio = nu};
       std::vector<Constraint> constraints = symmetry();
       constraints.emplace_back(TractionConstraint{plane_x(kSize[0]), Vec3(traction, 0, 0)});
       const TissueModel model = make_tissue_model(irregular_block(kSize, {8, 4, 3}, 0.2, 3), material, constraints);

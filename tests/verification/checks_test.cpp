@@ -87,9 +87,7 @@ TEST(Criterion, AFinestMeshThatIsFarOffFailsWhateverItsExtrapolationSays) {
 }
 
 TEST(Criterion, WithinTakesBothSidesAndAtLeastOnlyOne) {
-  VerificationCheck check;
-  check.expected = 10.0;
-  check.tolerance = 1.0;
+  VerificationCheck check{.expected = 10.0, .tolerance = 1.0};
   const auto passes = [&](double found, Criterion criterion) {
     check.found = found;
     check.criterion = criterion;
@@ -114,8 +112,7 @@ TEST(Reference, BentLineIsTheElasticaOfTheTables) {
   };
   for (const Row row : {Row{1.0, 0.05643, 0.30172}, Row{2.0, 0.16064, 0.49346}, Row{5.0, 0.38763, 0.71379},
                         Row{10.0, 0.55500, 0.81061}}) {
-    PlaneBeam beam;
-    beam.force_mn = row.load;
+    PlaneBeam beam{.force_mn = row.load};
     const Vec2 tip = bent_line(beam).back();
     EXPECT_NEAR(1.0 - tip[0], row.along, 6e-6) << row.load;
     EXPECT_NEAR(-tip[1], row.across, 6e-6) << row.load;
@@ -145,9 +142,7 @@ TEST(Reference, CornerExponentIsTheKnownOneOfARightAngle) {
 
 TEST(Reference, ClosedFormsOfBothLawsHaveTheSmallStrainLimit) {
   for (const MaterialModel model : {MaterialModel::Corotational, MaterialModel::StableNeoHookean}) {
-    Material material;
-    material.model = model;
-    material.poissons_ratio = 0.4;
+    Material material{.model = model, .poissons_ratio = 0.4};
     constexpr double kStrain = 1e-6;
     const double side = free_stretch_of_bar(material, 1.0 + kStrain);
     const double stress = principal_stress_kpa(material, Vec3(1.0 + kStrain, side, side))[0];

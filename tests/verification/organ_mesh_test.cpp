@@ -34,9 +34,7 @@ class OrganMesh : public ::testing::TestWithParam<Organ> {
   }
   /// The planner's default, and the law that is defined for every strain and does not lock.
   static std::vector<Material> tissues() {
-    Material safe;
-    safe.model = MaterialModel::StableNeoHookean;
-    safe.volume = VolumeTreatment::Averaged;
+    Material safe{.model = MaterialModel::StableNeoHookean, .volume = VolumeTreatment::Averaged};
     return {Material{}, safe};
   }
   static void expect_sound(const TissueModel& model, const StaticResult& result) {
@@ -57,8 +55,7 @@ class OrganMesh : public ::testing::TestWithParam<Organ> {
   static StaticResult solve(const TissueModel& model) {
     Workers workers(2);
     Monitor monitor;
-    StaticSettings settings;
-    settings.max_newton_iterations = 200;
+    StaticSettings settings{.max_newton_iterations = 200};
     return solve_static(model, settings, workers, monitor);
   }
 };

@@ -52,8 +52,7 @@ TetMesh beam_mesh(int file) {
 }
 
 SofaCase held_at_z0(const TetMesh& mesh, const Vec3& gravity) {
-  SofaCase load;
-  load.gravity = gravity;
+  SofaCase load{.gravity = gravity};
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (mesh.vertices[v][2] > 1e-9) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) load.held.emplace_back(3 * v + axis, 0.0);
@@ -150,10 +149,7 @@ TEST(SofaCantilever, LinearIsMetWithin50Micrometres) {
 TEST(SofaCantilever, CorotationalIsMetWithin50MicrometresByTheLibrary) {
   INCISE_NEEDS_DATA_DIR();
   const SofaState state = si_state("TetrahedronCorotationalFEMForceField");
-  Material material;
-  material.youngs_modulus_kpa = 2000.0;
-  material.poissons_ratio = 0.45;
-  material.density_kg_m3 = 1100.0;
+  Material material{.youngs_modulus_kpa = 2000.0, .poissons_ratio = 0.45, .density_kg_m3 = 1100.0};
   const TissueModel model =
       make_tissue_model(si_mesh(), material, {FixedConstraint{testing::plane_z(0.0)}}, Vec3(0, -9810, 0));
   const double worst = testing::largest_distance(testing::library_steps(model, kSiStepping), state.last);

@@ -67,8 +67,7 @@ Reference read_reference() {
 }
 
 Material sofa_material() {
-  Material material;
-  material.density_kg_m3 = 1000.0;
+  Material material{.density_kg_m3 = 1000.0};
   return material;
 }
 
@@ -85,8 +84,7 @@ void expect_field(const TissueModel& model, const Points& positions, const Point
 StaticResult solve(const TissueModel& model) {
   Workers workers(1);
   Monitor monitor;
-  StaticSettings settings;
-  settings.relative_tolerance = 1e-11;
+  StaticSettings settings{.relative_tolerance = 1e-11};
   return solve_static(model, settings, workers, monitor);
 }
 

@@ -8,8 +8,7 @@ namespace incise {
 namespace {
 
 RobotProgram square_program() {
-  ToolPath path;
-  path.frame = PathFrame::Robot;
+  ToolPath path{.frame = PathFrame::Robot};
   for (const Vec3& p : {Vec3(600, -15, 180), Vec3(615, 0, 180), Vec3(600, 15, 180), Vec3(585, 0, 180)})
     path.waypoints.push_back({p});
   return make_program(path);

@@ -158,8 +158,7 @@ double mean_radius_mm(const Contour& contour) {
 }
 
 void expect_both_lines_at_their_scale() {
-  PhotographSettings settings;
-  settings.mm_per_pixel = 0.06;
+  PhotographSettings settings{.mm_per_pixel = 0.06};
   const ColorPicture picture = photograph(body(), cut_at_35(), settings);
   const Ink green = find_ink(picture, false);
   const Ink red = find_ink(picture, true);
@@ -180,8 +179,7 @@ TEST(Photograph, ShowsBothLinesAtTheirScaleAndAnOpenRingAsAnOpenLine) {
   }
   open.inner_edge.reset();
   open.outcome = Outcome::OpenLoop;
-  PhotographSettings settings;
-  settings.mm_per_pixel = 0.06;
+  PhotographSettings settings{.mm_per_pixel = 0.06};
   const Ink whole = find_ink(photograph(body(), cut_at_35(), settings), true);
   const Ink part = find_ink(photograph(body(), open, settings), true);
   EXPECT_GT(part.pixels, whole.pixels / 3);

@@ -311,9 +311,7 @@ TEST_F(CalibrateBlocks, LooksHalfWayToTheFirstFailureWhereTheAnswerMayLieThere) 
   const Calibration made = run(grid({13.0}, {3.0 / (13.0 * 0.02)}));
   subjects_[0].photographed.tumor_edge = made.specimens[0].runs[0].final_tumor_edge;
   subjects_[0].photographed.incision = *made.specimens[0].runs[0].inner_edge;
-  CalibrationRequest request;
-  request.drag_lengths_mm = {0.5, 1.25, 2.0, 10.0};
-  request.second_drag_lengths_mm = {};
+  CalibrationRequest request{.drag_lengths_mm = {0.5, 1.25, 2.0, 10.0}, .second_drag_lengths_mm = {}};
   const Calibration fit = run(request);
   ASSERT_FALSE(fit.specimens[0].runs[3].closed_loop);
   const double beyond_mm = fit.fit->drag_length_mm.grid.back();
@@ -326,9 +324,7 @@ TEST_F(CalibrateBlocks, LooksHalfWayToTheFirstFailureWhereTheAnswerMayLieThere) 
 TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
   subjects_[0].photographed.name = "opens";
   subjects_[1].photographed.name = "closes";
-  CalibrationRequest request;
-  request.drag_lengths_mm = {0.5, 1.25, 2.0};
-  request.second_drag_lengths_mm = {};
+  CalibrationRequest request{.drag_lengths_mm = {0.5, 1.25, 2.0}, .second_drag_lengths_mm = {}};
   const Calibration both = run(request);
   EXPECT_TRUE(both.left_out.empty());
   ASSERT_EQ(both.fit->specimens.size(), 2U);
@@ -363,9 +359,7 @@ TEST_F(CalibrateBlocks, ASpecimenWhoseRingOpensIsLeftOutOfTheFitAndNamed) {
 }
 
 TEST_F(CalibrateBlocks, ASpecimenThatOpensBetweenTheTwoFitsIsLeftOutThen) {
-  CalibrationRequest request;
-  request.drag_lengths_mm = {0.5, 2.0};
-  request.second_drag_lengths_mm = {};
+  CalibrationRequest request{.drag_lengths_mm = {0.5, 2.0}, .second_drag_lengths_mm = {}};
   const Calibration made = run(grid({13.0}, {1.25 / (13.0 * 0.02)}));
   for (std::size_t s = 0; s < 2; ++s) {
     subjects_[s].photographed.name = fmt::format("s{}", s);
@@ -405,9 +399,7 @@ TEST_F(CalibrateBlocks, ASpecimenThatCannotBeStretchedAtItsStiffnessIsLeftOutAnd
   EXPECT_THAT(table.specimens[0].runs[0].problem, HasSubstr("can be stretched"));
   EXPECT_FALSE(table.specimens[1].runs[0].is_failure());
 
-  CalibrationRequest request;
-  request.drag_lengths_mm = {0.5, 1.25};
-  request.second_drag_lengths_mm = {};
+  CalibrationRequest request{.drag_lengths_mm = {0.5, 1.25}, .second_drag_lengths_mm = {}};
   const Calibration fit = run(request);
   ASSERT_EQ(fit.left_out.size(), 1U);
   EXPECT_EQ(fit.left_out[0].name, "too soft");
@@ -421,9 +413,7 @@ TEST_F(CalibrateBlocks, ASpecimenThatCannotBeStretchedAtItsStiffnessIsLeftOutAnd
 
 TEST_F(CalibrateBlocks, ARingThatClosedBeneathTheSkinIsReadByItsMidline) {
   subjects_.pop_back();
-  CalibrationRequest request;
-  request.drag_lengths_mm = {0.5, 1.25, 2.0, 2.75};
-  request.second_drag_lengths_mm = {};
+  CalibrationRequest request{.drag_lengths_mm = {0.5, 1.25, 2.0, 2.75}, .second_drag_lengths_mm = {}};
   const Calibration made = run(grid({13.0}, {1.25 / (13.0 * 0.02)}));
   subjects_[0].photographed.tumor_edge = made.specimens[0].runs[0].final_tumor_edge;
   subjects_[0].photographed.incision = *made.specimens[0].runs[0].inner_edge;

@@ -22,9 +22,7 @@ using ::testing::ThrowsMessage;
 
 /// A block of 24 x 24 x 8 mm, held at its underside.
 TissueModel block(int cells_across, double poissons_ratio, VolumeTreatment volume = VolumeTreatment::PerTet) {
-  Material material;
-  material.poissons_ratio = poissons_ratio;
-  material.volume = volume;
+  Material material{.volume = volume, .poissons_ratio = poissons_ratio};
   return make_tissue_model(make_block({24, 24, 8}, {cells_across, cells_across, cells_across / 3}), material,
                            {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(25, 25, 0.1))}}});
 }
@@ -198,8 +196,7 @@ TEST(MarginRoom, EndsBeforeTheRimOrBeforeSkinThatTheRegionMade) {
       const double angle = 2.0 * std::numbers::pi * i / 48;
       edge.points.emplace_back(middle_mm + radius_mm * std::cos(angle), 12.0 + radius_mm * std::sin(angle), 8.0);
     }
-    PlanSettings settings;
-    settings.depth_mm = 2.0;
+    PlanSettings settings{.depth_mm = 2.0};
     return margin_room({boundary_surface(mesh), mesh.vertices, made}, edge, settings, 0.5);
   };
   // The rim lies 12 mm from the middle, and the path keeps 1 mm clear of it.

@@ -29,8 +29,7 @@ Contour circle(double radius_mm, const Vec3& center = Vec3::Zero()) {
 
 /// A ring at its intended place round a tumour of 20 mm, sound in every respect.
 SimulatedCut sound_cut() {
-  SimulatedCut cut;
-  cut.outcome = Outcome::Success;
+  SimulatedCut cut{.outcome = Outcome::Success};
   IncisionResult& incision = cut.incision;
   incision.outcome = Outcome::Success;
   incision.is_closed_loop = true;
@@ -38,11 +37,7 @@ SimulatedCut sound_cut() {
   incision.kerf_width_mm = 1.8;
   incision.steps.resize(100);
   for (const double depth_mm : {1.0, 2.5, 4.0, 5.0}) {
-    KerfLayer layer;
-    layer.depth_mm = depth_mm;
-    layer.is_within_plan = true;
-    layer.is_closed = true;
-    layer.width_mm = 1.8;
+    KerfLayer layer{.depth_mm = depth_mm, .is_within_plan = true, .is_closed = true, .width_mm = 1.8};
     incision.kerf.layers.push_back(layer);
     cut.layers.push_back({Summary{.mean = 0.0, .min = -0.4, .max = 0.4}, {}});
   }

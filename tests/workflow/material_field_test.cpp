@@ -39,8 +39,7 @@ TEST(MaterialField, IsEmptyWhereNothingVaries) {
 }
 
 TEST(MaterialField, ALabelledPartIsTenTimesStiffer) {
-  MaterialVariation variation;
-  variation.labels = {{2, 700.0, std::nullopt}};
+  MaterialVariation variation{.labels = {{2, 700.0, std::nullopt}}};
   const MaterialField field = material_field(labelled_block(), {}, variation);
   ASSERT_EQ(field.youngs_modulus_kpa.size(), 12U);
   EXPECT_EQ(field.youngs_modulus_kpa[8], 70.0);
@@ -52,9 +51,7 @@ TEST(MaterialField, CellDataOfTheMeshHoldAndLabelsAreLaidOverThem) {
   TetMesh mesh = labelled_block();
   mesh.cell_data["youngs_modulus_kpa"] = {1, std::vector<double>(12, 30.0)};
   mesh.cell_data["fibre_direction"] = {3, std::vector<double>(36, 1.0)};
-  MaterialVariation variation;
-  variation.from_mesh = true;
-  variation.labels = {{2, std::nullopt, 0.4}, {1, 50.0, std::nullopt}};
+  MaterialVariation variation{.from_mesh = true, .labels = {{2, std::nullopt, 0.4}, {1, 50.0, std::nullopt}}};
   const MaterialField field = material_field(mesh, {}, variation);
   EXPECT_EQ(field.youngs_modulus_kpa[0], 50.0);
   EXPECT_EQ(field.youngs_modulus_kpa[11], 30.0);
@@ -64,12 +61,10 @@ TEST(MaterialField, CellDataOfTheMeshHoldAndLabelsAreLaidOverThem) {
 }
 
 TEST(MaterialField, SaysWhatTheMeshDoesNotCarry) {
-  MaterialVariation from_mesh;
-  from_mesh.from_mesh = true;
+  MaterialVariation from_mesh{.from_mesh = true};
   EXPECT_THAT(refusal(labelled_block(), from_mesh),
               AllOf(HasSubstr("specimen.material.from_mesh"), HasSubstr("'label'"), HasSubstr("fibre_direction")));
-  MaterialVariation labels;
-  labels.labels = {{2, 700.0, std::nullopt}};
+  MaterialVariation labels{.labels = {{2, 700.0, std::nullopt}}};
   EXPECT_THAT(refusal(make_block(Vec3(1, 1, 1), {1, 1, 1}), labels),
               AllOf(HasSubstr("specimen.material.labels"), HasSubstr("a mesh without cell data")));
   labels.labels = {{2, 700.0, std::nullopt}, {5, 7.0, std::nullopt}};
@@ -80,24 +75,21 @@ TEST(MaterialField, SaysWhatTheMeshDoesNotCarry) {
 TEST(MaterialField, RefusesDirectionsOfFibresThatHaveNoStiffness) {
   TetMesh mesh = labelled_block();
   mesh.cell_data["fibre_direction"] = {3, std::vector<double>(36, 1.0)};
-  MaterialVariation from_mesh;
-  from_mesh.from_mesh = true;
+  MaterialVariation from_mesh{.from_mesh = true};
   EXPECT_THAT(refusal(mesh, from_mesh), AllOf(HasSubstr("specimen.material.fibre_modulus_kpa: found 0 kPa"), HasSubstr("above 0")));
-  Material with_fibres;
-  with_fibres.fibre_modulus_kpa = 30.0;
+  Material with_fibres{.fibre_modulus_kpa = 30.0};
   EXPECT_EQ(material_field(mesh, with_fibres, from_mesh).fibre_directions.size(), 12U);
 }
 
 /// Fibres from the end at x = 0 to that at x = 20.
 MaterialVariation along_the_block() {
-  MaterialVariation variation;
-  variation.fibre_field = {EndRegion{-Vec3::UnitX(), 0.1}, EndRegion{Vec3::UnitX(), 0.1}};
+  MaterialVariation variation{
+      .fibre_field = FibreField{EndRegion{-Vec3::UnitX(), 0.1}, EndRegion{Vec3::UnitX(), 0.1}}};
   return variation;
 }
 
 TEST(MaterialField, HasTheDirectionsOfItsFibreField) {
-  Material fibrous;
-  fibrous.fibre_modulus_kpa = 30.0;
+  Material fibrous{.fibre_modulus_kpa = 30.0};
   const MaterialField field = material_field(labelled_block(), fibrous, along_the_block());
   ASSERT_EQ(field.fibre_directions.size(), 12U);
   for (const Vec3& direction : field.fibre_directions) EXPECT_LT((direction - Vec3::UnitX()).norm(), 1e-8);
@@ -110,8 +102,7 @@ TEST(MaterialField, RefusesAFibreFieldThatWouldNotActOrIsNotAlone) {
                               "nothing"),
                     HasSubstr("above 0")));
   EXPECT_EQ(validate(Material{}, along_the_block()).size(), 1U);
-  Material fibrous;
-  fibrous.fibre_modulus_kpa = 30.0;
+  Material fibrous{.fibre_modulus_kpa = 30.0};
   EXPECT_THAT(validate(fibrous, along_the_block()), IsEmpty());
   const auto refusal_of_fibrous = [&](const TetMesh& mesh, const MaterialVariation& variation) {
     return testing::refusal_of<CaseError>([&] { return material_field(mesh, fibrous, variation); });
@@ -176,8 +167,7 @@ TEST(MaterialVariation, ChangesTheKeyOfAStageByWhereItsFibresRun) {
 }
 
 TEST(MaterialField, RefusesCellDataThatAreNoMaterial) {
-  MaterialVariation from_mesh;
-  from_mesh.from_mesh = true;
+  MaterialVariation from_mesh{.from_mesh = true};
   TetMesh mesh = labelled_block();
   mesh.cell_data["poissons_ratio"] = {1, std::vector<double>(12, 0.3)};
   mesh.cell_data["poissons_ratio"].values[4] = 0.5;
@@ -188,8 +178,7 @@ TEST(MaterialField, RefusesCellDataThatAreNoMaterial) {
   EXPECT_THAT(refusal(mesh, from_mesh), AllOf(HasSubstr("from_mesh: found 2, expected cell data \"poissons_ratio\" with 1 component"),
                                          Not(HasSubstr("operator"))));
   mesh.cell_data["label"] = {3, std::vector<double>(36, 1.0)};
-  MaterialVariation labels;
-  labels.labels = {{1, 700.0, std::nullopt}};
+  MaterialVariation labels{.labels = {{1, 700.0, std::nullopt}}};
   EXPECT_THAT(refusal(mesh, labels), AllOf(HasSubstr("'label' with 3 components"), HasSubstr("one number for each of 12 tets")));
 }
 

@@ -8,9 +8,7 @@ namespace {
 
 ToolPath one_waypoint_path() {
   ToolPath path;
-  Waypoint waypoint;
-  waypoint.position_mm = Vec3(1, 2, 3);
-  waypoint.axis = Vec3(0, 0, -1);
+  Waypoint waypoint{.position_mm = Vec3(1, 2, 3), .axis = Vec3(0, 0, -1)};
   path.waypoints = {waypoint};
   path.tumor_edge.points = {Vec3(1, 0, 0)};
   return path;

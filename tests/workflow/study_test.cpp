@@ -154,8 +154,7 @@ TEST(PathErrors, AnInnerEdgeThatIsOpenNearTheSkinIsToldFromADeeperLayer) {
 TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
   Case settings;
   const auto cut_with = [](double mean_error_mm, double least_depth_mm, bool is_deep_layer_closed) {
-    SimulatedCut cut;
-    cut.outcome = Outcome::Success;
+    SimulatedCut cut{.outcome = Outcome::Success};
     cut.centerline.abs_error_mm = Summary{.mean = mean_error_mm};
     cut.incision.is_closed_loop = true;
     cut.incision.kerf.layers = {{.depth_mm = 4.0, .is_within_plan = true, .is_closed = is_deep_layer_closed}};
@@ -163,8 +162,7 @@ TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
     cut.incision.kerf.depth.planned_at_mm = {5.0, 5.0, 5.0};
     return cut;
   };
-  Correction paper;
-  paper.method = CompensationMethod::Paper;
+  Correction paper{.method = CompensationMethod::Paper};
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 4.6, true)), "")
       << "shallower, and deep enough";
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.9, 3.6, true), cut_with(0.3, 2.6, true)),
@@ -179,16 +177,14 @@ TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
 
 /// Of a mid-line with this mean |error|, mm.
 SimulatedCut cut_with(double mean_error_mm) {
-  SimulatedCut cut;
-  cut.outcome = Outcome::Success;
+  SimulatedCut cut{.outcome = Outcome::Success};
   cut.centerline.abs_error_mm = Summary{.mean = mean_error_mm};
   return cut;
 }
 
 TEST(IsAccepted, ByThePapersRule) {
   Case settings;  // a needle of 1 mm: radius 0.5
-  Correction paper;
-  paper.method = CompensationMethod::Paper;
+  Correction paper{.method = CompensationMethod::Paper};
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.99), cut_with(0.33)), "");
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.99), cut_with(0.63)),
               ::testing::HasSubstr("0.63 mm, but must be below the electrode's radius, 0.50 mm"))
@@ -202,8 +198,7 @@ TEST(IsAccepted, ByThePapersRule) {
 
 TEST(IncisionSettings, HaveTheEnergyPerAreaThatThePathIsCutWith) {
   Case settings;
-  ToolPath path;
-  path.waypoints = {{.depth_mm = 5.0, .speed_mm_s = 7.0}, {.depth_mm = 5.0, .speed_mm_s = 7.0}};
+  ToolPath path{.waypoints = {{.depth_mm = 5.0, .speed_mm_s = 7.0}, {.depth_mm = 5.0, .speed_mm_s = 7.0}}};
   EXPECT_EQ(incision_settings(settings, path).cut.relative_energy(), 1.0);
   for (Waypoint& waypoint : path.waypoints) waypoint.speed_mm_s = 3.5;
   EXPECT_EQ(incision_settings(settings, path).cut.relative_energy(), 2.0);
@@ -216,8 +211,7 @@ TEST(IncisionSettings, HaveTheEnergyPerAreaThatThePathIsCutWith) {
 TEST(IncisionSettings, OfViscousTissueHaveThePaceOfTheRealToolAndTheTimeSinceTheStretch) {
   Case settings;
   settings.time_since_stretch_s = 90.0;
-  ToolPath path;
-  path.waypoints = {{.depth_mm = 5.0, .speed_mm_s = 4.0}, {.depth_mm = 5.0, .speed_mm_s = 8.0}};
+  ToolPath path{.waypoints = {{.depth_mm = 5.0, .speed_mm_s = 4.0}, {.depth_mm = 5.0, .speed_mm_s = 8.0}}};
   EXPECT_FALSE(incision_settings_for(settings, path, {}).time_since_stretch_s);
   settings.material.kelvin_voigt_time_s = 0.1;
   EXPECT_EQ(incision_settings_for(settings, path, {}).cut.real_speed_mm_s, 6.0);
@@ -386,8 +380,7 @@ TEST(Validate, RefusesAChoiceOfCorrectionThatWouldNotAct) {
 }
 
 TEST(ObjectionTo, APathByPhotographsIsNotHeldToTheSimulatedError) {
-  Correction correction;
-  correction.method = CompensationMethod::Profile;
+  Correction correction{.method = CompensationMethod::Profile};
   EXPECT_EQ(objection_to({}, correction, cut_with(0.5), cut_with(1.1)), "") << "photographs say more than is simulated";
   SimulatedCut open = cut_with(0.1);
   open.outcome = Outcome::OpenLoop;
