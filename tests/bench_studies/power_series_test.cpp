@@ -1,27 +1,15 @@
 #include "support/counted_entries.hpp"
+#include "support/monitors.hpp"
 
 #include <incise/bench_studies/power_series.hpp>
 #include <incise/core/error.hpp>
 
 #include <gmock/gmock.h>
 
-#include <atomic>
-
 namespace incise {
 namespace {
 
 using ::testing::ElementsAre;
-
-/// Asks to stop once progress has been told this often.
-class Impatient : public Monitor {
- public:
-  explicit Impatient(int most) : left_(most) {}
-  void progress(std::string_view, double) override { --left_; }
-  [[nodiscard]] bool is_cancelled() const override { return left_ <= 0; }
-
- private:
-  std::atomic<int> left_;
-};
 
 /// Meshes and steps of a bench that is quick and coarse: numbers of its own, the same order.
 PowerRequest coarse() {
@@ -70,7 +58,7 @@ TEST(RunPowerSeries, MorePowerBulgesLessAndBurnsFartherAndFinishedCutsAreNotMade
 }
 
 TEST(RunPowerSeries, StoppedOnRequestItHasKeptWhatWasFinished) {
-  Impatient impatient(150);  // a cut of these has more than 80 steps, two of them more than 160
+  testing::StopAfter impatient(150);  // a cut of these has more than 80 steps, two of them more than 160
   Workers one(1);
   testing::Entries kept;
   Cache store(std::make_unique<testing::CountedEntries>(kept));

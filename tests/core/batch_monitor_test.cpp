@@ -1,3 +1,5 @@
+#include "support/monitors.hpp"
+
 #include <incise/core/batch_monitor.hpp>
 
 #include <gmock/gmock.h>
@@ -11,23 +13,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-/// Keeps what it is told.
-class BatchListener : public Monitor {
- public:
-  void message(Severity, std::string_view) override { ++messages; }
-  void progress(std::string_view stage, double fraction) override {
-    stages.emplace_back(stage);
-    fractions.push_back(fraction);
-  }
-  [[nodiscard]] bool is_cancelled() const override { return stops; }
-  std::vector<std::string> stages;
-  std::vector<double> fractions;
-  int messages = 0;
-  bool stops = false;
-};
-
 TEST(BatchProgress, IsTheMeanOfItsJobsUnderOneName) {
-  BatchListener outer;
+  testing::RecordingMonitor outer;
   BatchProgress batch(4, "cutting", outer);
   JobMonitor(batch, 0).progress("anything", 0.5);
   JobMonitor(batch, 3).progress("anything", 1.0);
@@ -36,7 +23,7 @@ TEST(BatchProgress, IsTheMeanOfItsJobsUnderOneName) {
 }
 
 TEST(BatchProgress, OfAnotherThreadCountsButOnlyItsMakerTells) {
-  BatchListener outer;
+  testing::RecordingMonitor outer;
   BatchProgress batch(2, "cutting", outer);
   std::thread([&batch] { batch.note(0, 1.0); }).join();
   EXPECT_THAT(outer.fractions, IsEmpty());
@@ -45,13 +32,13 @@ TEST(BatchProgress, OfAnotherThreadCountsButOnlyItsMakerTells) {
 }
 
 TEST(JobMonitor, StopsWithTheOuterMonitorAndKeepsItsMessagesToItself) {
-  BatchListener outer;
+  testing::RecordingMonitor outer;
   BatchProgress batch(1, "cutting", outer);
   JobMonitor job(batch, 0);
   job.message(Severity::Warning, "heard by nobody");
-  EXPECT_EQ(outer.messages, 0);
+  EXPECT_THAT(outer.messages, IsEmpty());
   EXPECT_FALSE(job.is_cancelled());
-  outer.stops = true;
+  outer.stop = true;
   EXPECT_TRUE(job.is_cancelled());
 }
 

@@ -1,12 +1,16 @@
 #include "support/counted_entries.hpp"
+#include "support/monitors.hpp"
 
 #include <incise/core/cache.hpp>
 #include <incise/core/error.hpp>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace incise {
 namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
 struct Answer {
   double value_mm = 0.0;
@@ -14,12 +18,6 @@ struct Answer {
 void describe(Visitor& v, Answer& a) {
   v("value_mm", a.value_mm, "A length.");
 }
-
-class Messages : public Monitor {
- public:
-  void message(Severity, std::string_view text) override { all += text; }
-  std::string all;
-};
 
 TEST(Cache, MakesAResultOnce) {
   Cache cache;
@@ -50,19 +48,19 @@ TEST(CacheKey, TellsPartsApart) {
 
 TEST(Cache, ReportsAValueThatDoesNotFitAndMakesItAgain) {
   Cache cache;
-  Messages told;
+  testing::RecordingMonitor told;
   const CacheKey key = CacheKey("answer").add_text("x");
   cache.keep("a", key, Answer{-7.0});
   const auto is_length = [](const Answer& kept) { return kept.value_mm >= 0.0; };
   EXPECT_EQ(cache.get_or_make<Answer>("a", key, told, is_length, [] { return Answer{7.0}; }).value_mm, 7.0);
-  EXPECT_NE(told.all.find("values that do not fit each other"), std::string::npos);
+  EXPECT_THAT(told.messages, Contains(HasSubstr("values that do not fit each other")));
   EXPECT_EQ(cache.find<Answer>("a", key, told, is_length)->value_mm, 7.0);
 }
 
 TEST(Cache, ReportsADamagedEntryAndMakesItAgain) {
   testing::Entries entries;
   Cache cache(std::make_unique<testing::CountedEntries>(entries));
-  Messages told;
+  testing::RecordingMonitor told;
   const CacheKey key = CacheKey("answer").add_text("x");
   cache.keep("a", key, Answer{7.0});
   const std::string sound = entries.bytes.at("a");
@@ -72,7 +70,7 @@ TEST(Cache, ReportsADamagedEntryAndMakesItAgain) {
     const auto found = cache.find<Answer>("a", key, told);
     EXPECT_FALSE(found) << i;
   }
-  EXPECT_NE(told.all.find("It is computed again"), std::string::npos);
+  EXPECT_THAT(told.messages, Contains(HasSubstr("It is computed again")));
   for (std::size_t size = 0; size < sound.size(); ++size) {
     entries.bytes["a"] = sound.substr(0, size);
     EXPECT_FALSE(cache.find<Answer>("a", key, told)) << size;

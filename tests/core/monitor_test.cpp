@@ -1,3 +1,4 @@
+#include "support/monitors.hpp"
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
@@ -8,20 +9,6 @@
 namespace incise {
 namespace {
 
-class Listener : public Monitor {
- public:
-  void message(Severity, std::string_view) override { ++heard; }
-  void progress(std::string_view, double) override { ++heard; }
-  [[nodiscard]] bool is_cancelled() const override { return stops; }
-  int heard = 0;
-  bool stops = false;
-};
-
-class StoppingMonitor : public Monitor {
- public:
-  [[nodiscard]] bool is_cancelled() const override { return true; }
-};
-
 TEST(Monitor, NeverStopsByDefault) {
   Monitor monitor;
   monitor.message(Severity::Notice, "heard by nobody");
@@ -30,18 +17,18 @@ TEST(Monitor, NeverStopsByDefault) {
 }
 
 TEST(Monitor, StopsAComputationByNameWhenAsked) {
-  EXPECT_EQ(testing::refusal_of<Cancelled>([] { throw_if_cancelled(StoppingMonitor(), "meshing"); }),
+  EXPECT_EQ(testing::refusal_of<Cancelled>([] { throw_if_cancelled(testing::StopAfter(), "meshing"); }),
             "meshing was interrupted");
 }
 
 TEST(StopOnly, StopsWithTheOuterMonitorAndTellsItNothing) {
-  Listener outer;
+  testing::RecordingMonitor outer;
   StopOnly inner(outer);
   inner.message(Severity::Warning, "inner");
   inner.progress("inner", 0.5);
-  EXPECT_EQ(outer.heard, 0);
+  EXPECT_TRUE(outer.messages.empty() && outer.fractions.empty());
   EXPECT_FALSE(inner.is_cancelled());
-  outer.stops = true;
+  outer.stop = true;
   EXPECT_TRUE(inner.is_cancelled());
 }
 

@@ -15,8 +15,8 @@
 namespace incise {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 TEST(Verdict, IsOkWithoutAReason) {
   const Verdict verdict;

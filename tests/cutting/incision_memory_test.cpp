@@ -1,4 +1,5 @@
 #include "cutting/ring_in_a_block.hpp"
+#include "support/monitors.hpp"
 
 #include <incise/core/memory.hpp>
 #include <incise/cutting/incision_memory.hpp>
@@ -19,16 +20,6 @@ bool reset_peak() {
   return reset.good() && peak_memory_bytes().has_value();
 }
 
-/// Asks to stop once the first steps are done: by then all is held that a cut holds, but for frames.
-class StopSoon : public Monitor {
- public:
-  void progress(std::string_view, double) override { ++steps_; }
-  [[nodiscard]] bool is_cancelled() const override { return steps_ >= 3; }
-
- private:
-  int steps_ = 0;
-};
-
 class IncisionMemory : public testing::RingInABlock {
  protected:
   /// What a cut of a block of 32 x 32 x 8 mm was expected to take, over what it took.
@@ -42,7 +33,7 @@ class IncisionMemory : public testing::RingInABlock {
         std::move(mesh), material, {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
     const TissueState stretched = rest_state(model);
     Workers workers(1);
-    StopSoon monitor;
+    testing::StopAfter monitor(3);  // by then all is held that a cut holds, but for frames
     EXPECT_EQ(simulate_incision(model, stretched, ring(4.0), settings_, workers, monitor).outcome, Outcome::Cancelled);
     return expected / static_cast<double>(*peak_memory_bytes() - before);
   }

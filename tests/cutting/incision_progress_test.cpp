@@ -1,5 +1,6 @@
 #include "cutting/ring_in_a_block.hpp"
 #include "cutting/same_incision.hpp"
+#include "support/monitors.hpp"
 
 #include <incise/core/described_bytes.hpp>
 #include <incise/core/error.hpp>
@@ -10,17 +11,6 @@
 
 namespace incise {
 namespace {
-
-/// Asks to stop after so many steps.
-class StopAfter : public Monitor {
- public:
-  explicit StopAfter(int steps) : left_(steps) {}
-  void progress(std::string_view, double) override { --left_; }
-  [[nodiscard]] bool is_cancelled() const override { return left_ <= 0; }
-
- private:
-  int left_;
-};
 
 /// The ring of some ninety steps, with drag and frames.
 class InterruptedIncision : public testing::RingInABlock {
@@ -41,7 +31,7 @@ class InterruptedIncision : public testing::RingInABlock {
   /// What is left of the cut when it is stopped after so many steps.
   [[nodiscard]] std::optional<IncisionProgress> interrupted_after(int steps, IncisionProgress from, int threads) const {
     std::optional<IncisionProgress> last;
-    StopAfter monitor(steps);
+    testing::StopAfter monitor(steps);
     const IncisionResult result =
         go_on(std::move(from), threads, monitor, [&](const IncisionProgress& progress, bool is_interrupted) {
           if (is_interrupted) last = progress;
@@ -120,7 +110,7 @@ TEST_F(InterruptedIncision, ShowsEveryRenewalStepOfAnUninterruptedRunWhileTheTis
 }
 
 TEST_F(InterruptedIncision, KeepsALastFrameWithTheToolIn) {
-  StopAfter monitor(5);
+  testing::StopAfter monitor(5);
   const IncisionResult stopped = go_on(begin(), 1, monitor);
   ASSERT_EQ(stopped.outcome, Outcome::Cancelled);
   ASSERT_FALSE(stopped.frames.empty());

@@ -1,4 +1,5 @@
 #include "cutting/ring_in_a_block.hpp"
+#include "support/monitors.hpp"
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
@@ -147,19 +148,10 @@ TEST_F(Incision, KeepsTheFramesThatWereAskedForFromFirstToLast) {
             result.final_state.tissue.is_live);
 }
 
-/// Collects what is said.
-class Listener : public Monitor {
- public:
-  void message(Severity severity, std::string_view text) override {
-    if (severity == Severity::Warning) warnings.emplace_back(text);
-  }
-  std::vector<std::string> warnings;
-};
-
 TEST_F(Incision, SaysWhenItsStepsAreTooFewForTheFrames) {
   const auto warnings_with = [this](int frames) {
     settings_.frames = frames;
-    Listener listener;
+    testing::RecordingMonitor listener;
     Workers workers(1);
     const IncisionResult result =
         simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, listener);
@@ -181,7 +173,7 @@ TEST_F(Incision, SaysThatItBrokeOffWhereAPositionIsNoLongerFinite) {
                              {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
   model_.dead_load_mn.back().z() = 1e152;
   settings_.cut.residual_tolerance = 1e-3;
-  Listener listener;
+  testing::RecordingMonitor listener;
   Workers workers(1);
   const IncisionResult result = simulate_incision(model_, rest_state(model_), ring(4.0), settings_, workers, listener);
   EXPECT_EQ(result.outcome, Outcome::NotConverged);
@@ -232,20 +224,13 @@ TEST_F(Incision, StopsWhereItIsWhenAskedTo) {
   EXPECT_EQ(result.outcome, Outcome::Cancelled);
 }
 
-/// Counts the steps that are reported.
-class StepCounter : public Monitor {
- public:
-  void progress(std::string_view, double) override { ++steps; }
-  int steps = 0;
-};
-
 TEST_F(Incision, ATumourThatCannotBeMeasuredIsRefusedBeforeTheCut) {
   const auto refusal = [this](const ToolPath& path) {
-    StepCounter counter;
+    testing::RecordingMonitor recorder;
     Workers workers(1);
     const std::string message = testing::refusal_of<InvalidArgument>(
-        [&] { return simulate_incision(model_, rest_state(model_), path, settings_, workers, counter); });
-    EXPECT_EQ(counter.steps, 0);
+        [&] { return simulate_incision(model_, rest_state(model_), path, settings_, workers, recorder); });
+    EXPECT_TRUE(recorder.fractions.empty());
     return message;
   };
   ToolPath path = ring(4.0);

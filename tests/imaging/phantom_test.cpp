@@ -1,3 +1,4 @@
+#include "support/monitors.hpp"
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
@@ -153,9 +154,7 @@ TEST(Phantom, ListsEverySettingOutOfItsRange) {
 }
 
 TEST(Phantom, StopsWhenAsked) {
-  struct : Monitor {
-    [[nodiscard]] bool is_cancelled() const override { return true; }
-  } monitor;
+  testing::StopAfter monitor;
   EXPECT_THROW(static_cast<void>(make_phantom(coarse(1), monitor)), Cancelled);
 }
 

@@ -1,3 +1,4 @@
+#include "support/monitors.hpp"
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
@@ -524,14 +525,7 @@ TEST(Segmentation, CautionsWhereSmoothingTakesAPartOfASmallBody) {
 }
 
 TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
-  struct : Monitor {
-    double last = -1.0;
-    bool is_monotone = true;
-    void progress(std::string_view, double fraction) override {
-      is_monotone = is_monotone && fraction >= last;
-      last = fraction;
-    }
-  } monitor;
+  testing::RecordingMonitor monitor;
   Workers workers(2);
   SegmentationSettings settings{.roi_box_mm = Box3(Vec3(10, 0, 0), Vec3(30, 30, 20))};
   const Segmentation found = segment(ball_of_tissue(), settings, workers, monitor);
@@ -539,8 +533,8 @@ TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
   EXPECT_EQ(found.verdict.reasons()[0].id, "scan");
   EXPECT_THAT(found.verdict.reasons()[0].message,
               ::testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
-  EXPECT_TRUE(monitor.is_monotone);
-  EXPECT_EQ(monitor.last, 1.0);
+  EXPECT_TRUE(std::is_sorted(monitor.fractions.begin(), monitor.fractions.end()));
+  EXPECT_EQ(monitor.fractions.back(), 1.0);
 }
 
 TEST(Segmentation, RefusesSeedsAndRegionsThatDoNotFitTheVolume) {

@@ -1,6 +1,6 @@
 // DICOM series: what each slice says, and what is refused. Slices are put together by hand.
 #include "io_volume/handmade_files.hpp"
-#include "io_volume/recording_monitor.hpp"
+#include "support/monitors.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -1,6 +1,6 @@
 // Single-file formats: NRRD, NIfTI, MetaImage.
 #include "io_volume/handmade_files.hpp"
-#include "io_volume/recording_monitor.hpp"
+#include "support/monitors.hpp"
 #include "support/refusal.hpp"
 #include "support/temporary_folder.hpp"
 

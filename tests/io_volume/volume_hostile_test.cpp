@@ -1,6 +1,6 @@
 // Volumes that were made, or happened, to do harm: each ends in one sentence that names the file, whatever the image libraries do.
 #include "io_volume/handmade_files.hpp"
-#include "io_volume/recording_monitor.hpp"
+#include "support/monitors.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/io/volume_io.hpp>

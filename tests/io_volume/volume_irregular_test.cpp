@@ -1,6 +1,6 @@
 // Series that are tilted, uneven or incomplete: found, named, and resampled to where the tissue is, or refused.
 #include "io_volume/handmade_files.hpp"
-#include "io_volume/recording_monitor.hpp"
+#include "support/monitors.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>

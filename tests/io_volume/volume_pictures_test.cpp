@@ -1,6 +1,6 @@
 // A stack of PNG pictures: order, orientation, and the two things that only the user knows.
 #include "io_volume/handmade_files.hpp"
-#include "io_volume/recording_monitor.hpp"
+#include "support/monitors.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>

@@ -1,8 +1,8 @@
 // Real scans: facts that are known about them from elsewhere (headers as other tools print them, label files of the
 // same scan).
 #include "io_volume/handmade_files.hpp"
-#include "io_volume/recording_monitor.hpp"
 #include "support/data_dir.hpp"
+#include "support/monitors.hpp"
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>

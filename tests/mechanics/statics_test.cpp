@@ -1,4 +1,5 @@
 #include "mechanics/bodies.hpp"
+#include "support/monitors.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/mechanics/statics.hpp>
@@ -83,15 +84,6 @@ TEST(SolveStatic, SupportHoldsAgainstAFirmPress) {
   EXPECT_GT(result.reactions_mn[1][2], 0.5 * 10.0 * 1600.0);
 }
 
-/// Keeps the warnings.
-class WarningsOnly : public Monitor {
- public:
-  void message(Severity severity, std::string_view text) override {
-    if (severity == Severity::Warning) texts.emplace_back(text);
-  }
-  std::vector<std::string> texts;
-};
-
 /// A column on a plane between walls, its lowest layer of tets of the given modulus, pressed down by 0.8 mm.
 TissueModel layered_column(double bottom_kpa) {
   const TetMesh mesh = make_block(Vec3(10, 10, 20), {1, 1, 4});
@@ -113,16 +105,16 @@ TissueModel layered_column(double bottom_kpa) {
 
 TEST(SolveStatic, WarnsOfTissueThatSinksIntoASupport) {
   Workers workers(1);
-  WarningsOnly soft;
+  testing::RecordingMonitor soft;
   const StaticResult sunk = solve_static(layered_column(6.0), {}, workers, soft);
   ASSERT_EQ(sunk.outcome, Outcome::Success);
   EXPECT_GT(sunk.penetration_mm, 0.05);
-  ASSERT_EQ(soft.texts.size(), 1U);
-  EXPECT_THAT(soft.texts[0], ::testing::AllOf(::testing::HasSubstr("specimen.constraints[2]"),
+  ASSERT_EQ(soft.warnings.size(), 1U);
+  EXPECT_THAT(soft.warnings[0], ::testing::AllOf(::testing::HasSubstr("specimen.constraints[2]"),
                                               ::testing::HasSubstr(fmt::format("up to {:.3g} mm", sunk.penetration_mm))));
-  WarningsOnly firm;
+  testing::RecordingMonitor firm;
   EXPECT_LT(solve_static(layered_column(70.0), {}, workers, firm).penetration_mm, 0.05);
-  EXPECT_THAT(firm.texts, ::testing::IsEmpty());
+  EXPECT_THAT(firm.warnings, ::testing::IsEmpty());
 }
 
 TEST(SolveStatic, ALoadWhoseResidualCannotBeMeasuredIsNotConvergedWithoutAResidual) {
@@ -215,19 +207,12 @@ TEST(SolveStatic, ConjugateGradientsGiveTheSameBitsAtAnyThreadCount) {
 }
 
 TEST(SolveStatic, ReportsEveryIterationAndNeverTakesProgressBack) {
-  class Listener : public Monitor {
-   public:
-    void message(Severity, std::string_view text) override { texts.emplace_back(text); }
-    void progress(std::string_view, double fraction) override { fractions.push_back(fraction); }
-    std::vector<std::string> texts;
-    std::vector<double> fractions;
-  };
-  Listener listener;
+  testing::RecordingMonitor listener;
   Workers workers(1);
   StaticSettings settings{.first_load_fraction = 0.5};
   const StaticResult result = solve_static(pulled_block(20.0), settings, workers, listener);
   ASSERT_EQ(result.outcome, Outcome::Success);
-  EXPECT_EQ(listener.texts.size(), result.residual_history.size());
+  EXPECT_EQ(listener.messages.size(), result.residual_history.size());
   EXPECT_TRUE(std::is_sorted(listener.fractions.begin(), listener.fractions.end()));
   EXPECT_EQ(listener.fractions.back(), 1.0);
 }
@@ -251,11 +236,7 @@ TEST(SolveStatic, SaysWhenTetsWereTurnedInsideOut) {
 }
 
 TEST(SolveStatic, StopsWhenAsked) {
-  class Impatient : public Monitor {
-   public:
-    [[nodiscard]] bool is_cancelled() const override { return true; }
-  };
-  Impatient monitor;
+  testing::StopAfter monitor;
   Workers workers(1);
   EXPECT_EQ(solve_static(pulled_block(20.0), {}, workers, monitor).outcome, Outcome::Cancelled);
 }

@@ -1,4 +1,5 @@
 #include "meshing/shapes.hpp"
+#include "support/monitors.hpp"
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
@@ -221,19 +222,14 @@ TEST(MeshLabels, KeepsTheLargestBodyAndReportsTheOthers) {
 }
 
 TEST(MeshLabels, ReportsProgressThatNeverFallsAndEndsAtOne) {
-  struct Recorder : Monitor {
-    std::vector<double> fractions;
-    void progress(std::string_view, double fraction) override { fractions.push_back(fraction); }
-  } recorder;
+  testing::RecordingMonitor recorder;
   static_cast<void>(mesh_labels(ball(6.0), SizingField::uniform(2.0), {}, recorder));
   EXPECT_TRUE(std::is_sorted(recorder.fractions.begin(), recorder.fractions.end()));
   EXPECT_DOUBLE_EQ(recorder.fractions.back(), 1.0);
 }
 
 TEST(MeshLabels, StopsBeforeItStartsWhenCancelled) {
-  struct Stopper : Monitor {
-    bool is_cancelled() const override { return true; }
-  } stopper;
+  testing::StopAfter stopper;
   EXPECT_THROW(static_cast<void>(mesh_labels(ball(6.0), SizingField::uniform(2.0), {}, stopper)), Cancelled);
 }
 

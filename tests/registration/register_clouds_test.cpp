@@ -1,6 +1,7 @@
 #include "registration/clouds.hpp"
 #include "registration/observability.hpp"
 #include "registration/rival_reason.hpp"
+#include "support/monitors.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/units.hpp>
@@ -304,9 +305,7 @@ TEST_F(RegisterClouds, RefusesEmptyCloudsAndNumbersThatAreNone) {
 }
 
 TEST_F(RegisterClouds, StopsWhenAsked) {
-  struct Impatient : Monitor {
-    [[nodiscard]] bool is_cancelled() const override { return true; }
-  } impatient;
+  testing::StopAfter impatient;
   const PointCloud good = hill(200, random_);
   EXPECT_EQ(register_clouds(good, good, {}, workers_, impatient).outcome, RegistrationOutcome::Cancelled);
 }

@@ -1,4 +1,5 @@
 // Every check of `incise verify`, each a test of its own; and the rules by which a check passes.
+#include "support/monitors.hpp"
 #include "verification/beam_in_the_plane.hpp"
 #include "verification/check.hpp"
 #include "verification/closed_forms.hpp"
@@ -69,13 +70,9 @@ TEST(Checks, RefuseNamesThatSelectNothing) {
   EXPECT_THROW((void)run_checks({"patch", -1.0}, workers, monitor), InvalidArgument);
 }
 
-class Stopped : public Monitor {
-  [[nodiscard]] bool is_cancelled() const override { return true; }
-};
-
 TEST(Checks, StopWhenAsked) {
   Workers workers(1);
-  Stopped monitor;
+  testing::StopAfter monitor;
   EXPECT_THROW((void)run_checks({}, workers, monitor), Cancelled);
 }
 

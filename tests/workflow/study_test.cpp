@@ -1,5 +1,6 @@
 #include "support/block_inputs.hpp"
 #include "support/counted_entries.hpp"
+#include "support/monitors.hpp"
 #include "support/portable_kernels.hpp"
 #include "support/refusal.hpp"
 
@@ -23,21 +24,14 @@ namespace incise {
 namespace {
 
 using testing::coarse_case;
+using ::testing::Contains;
+using ::testing::HasSubstr;
 
 /// A block of tissue, a round tumour edge on it, and what a run keeps of it.
 class Block : public testing::BlockInputs {
  public:
   testing::Entries kept;
   Cache cache{std::make_unique<testing::CountedEntries>(kept)};
-};
-
-/// Collects what is said.
-class Warnings : public Monitor {
- public:
-  void message(Severity severity, std::string_view text) override {
-    if (severity == Severity::Warning) all += std::string(text) + "\n";
-  }
-  std::string all;
 };
 
 /// Runs of the block with one cache.
@@ -65,15 +59,15 @@ class RunStudy : public ::testing::Test {
 
 TEST_F(RunStudy, OnePassOfTheCorrectionLowersTheErrorByMoreThanHalf) {
   Workers workers(2);
-  Warnings warnings;
+  testing::RecordingMonitor monitor;
   Case settings = coarse_case();
   settings.plan.power_w = 90.0;
   settings.cut.power_exponent = 0.0;  // power does nothing but heat
   settings.compensation.method = CompensationMethod::Paper;
-  const Study study = run_study(settings, block_, block_.cache, {}, workers, warnings);
-  EXPECT_NE(warnings.all.find("the mesh is coarse for a tool of 1.6 mm"), std::string::npos) << warnings.all;
+  const Study study = run_study(settings, block_, block_.cache, {}, workers, monitor);
+  EXPECT_THAT(monitor.warnings, Contains(HasSubstr("the mesh is coarse for a tool of 1.6 mm")));
   for (const char* cut : {"the cut as planned: caution: heat: heat reaches", "the corrected cut: caution: heat: heat reaches"}) {
-    EXPECT_NE(warnings.all.find(cut), std::string::npos) << warnings.all;
+    EXPECT_THAT(monitor.warnings, Contains(HasSubstr(cut)));
   }
   ASSERT_TRUE(study.as_planned && study.corrected);
   EXPECT_EQ(study.as_planned->outcome, Outcome::Success);
@@ -166,11 +160,11 @@ TEST(IsAccepted, NotWhatBuysTheLateralErrorWithDepthOrClosure) {
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 4.6, true)), "")
       << "shallower, and deep enough";
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.9, 3.6, true), cut_with(0.3, 2.6, true)),
-              ::testing::HasSubstr("at its shallowest it reaches 52 % of the planned depth, the cut before 72 %"))
+              HasSubstr("at its shallowest it reaches 52 % of the planned depth, the cut before 72 %"))
       << "as in the head CT";
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 2.6, true), cut_with(0.3, 3.6, true)), "");
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.9, 5.0, true), cut_with(0.3, 5.0, false)),
-              ::testing::HasSubstr("1 of the measured layers (4 mm deep); the cut before left 0"));
+              HasSubstr("1 of the measured layers (4 mm deep); the cut before left 0"));
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.9, 5.0, false), cut_with(0.3, 5.0, false)), "")
       << "no worse; the verdict refuses both";
 }
@@ -187,13 +181,13 @@ TEST(IsAccepted, ByThePapersRule) {
   Correction paper{.method = CompensationMethod::Paper};
   EXPECT_EQ(objection_to(settings, paper, cut_with(1.99), cut_with(0.33)), "");
   EXPECT_THAT(objection_to(settings, paper, cut_with(1.99), cut_with(0.63)),
-              ::testing::HasSubstr("0.63 mm, but must be below the electrode's radius, 0.50 mm"))
+              HasSubstr("0.63 mm, but must be below the electrode's radius, 0.50 mm"))
       << "the paper's own case that is not";
-  EXPECT_THAT(objection_to(settings, paper, cut_with(0.3), cut_with(0.4)), ::testing::HasSubstr("0.40 mm, not below the 0.30 mm"))
+  EXPECT_THAT(objection_to(settings, paper, cut_with(0.3), cut_with(0.4)), HasSubstr("0.40 mm, not below the 0.30 mm"))
       << "worse than before";
   SimulatedCut open = cut_with(0.1);
   open.outcome = Outcome::OpenLoop;
-  EXPECT_THAT(objection_to(settings, paper, cut_with(1.0), open), ::testing::HasSubstr("its ring does not close"));
+  EXPECT_THAT(objection_to(settings, paper, cut_with(1.0), open), HasSubstr("its ring does not close"));
 }
 
 TEST(IncisionSettings, HaveTheEnergyPerAreaThatThePathIsCutWith) {
@@ -299,7 +293,7 @@ TEST(DefaultConstraints, AreRefusedForABodyThatTheirLengthsWereNotMadeFor) {
   const TetMesh small = make_block({6, 9, 5}, {3, 4, 2});
   EXPECT_THAT([&] { static_cast<void>(default_constraints(small)); },
               ::testing::ThrowsMessage<CaseError>(
-                  ::testing::AllOf(::testing::HasSubstr("specimen.constraints"), ::testing::HasSubstr("9 mm long"))));
+                  ::testing::AllOf(HasSubstr("specimen.constraints"), HasSubstr("9 mm long"))));
 }
 
 /// Photographs of cuts along the planned path, all 0.8 mm too near.
@@ -384,7 +378,7 @@ TEST(ObjectionTo, APathByPhotographsIsNotHeldToTheSimulatedError) {
   EXPECT_EQ(objection_to({}, correction, cut_with(0.5), cut_with(1.1)), "") << "photographs say more than is simulated";
   SimulatedCut open = cut_with(0.1);
   open.outcome = Outcome::OpenLoop;
-  EXPECT_THAT(objection_to({}, correction, cut_with(0.5), open), ::testing::HasSubstr("its ring does not close"));
+  EXPECT_THAT(objection_to({}, correction, cut_with(0.5), open), HasSubstr("its ring does not close"));
 }
 
 }  // namespace
