@@ -62,12 +62,25 @@ TEST(AtTrueSize, TakesTheScaleOutOfSimulationAndCloudAlike) {
   EXPECT_THROW(static_cast<void>(at_true_size(0.0, camera)), InvalidArgument);
 }
 
-TEST(ProjectPath, LaysTheIncisionOntoTheMeasuredSurface) {
-  const Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
-  const TriMesh cloud = measured(0.2);
-  const MeasuredSurface surface(cloud, approach_of(path, T));
-  const ProjectedPath projected = project_path(path, T, surface, {}, kName);
+/// The simulated path, laid onto what was measured.
+class ProjectPath : public ::testing::Test {
+ protected:
+  [[nodiscard]] ProjectedPath project(const TriMesh& cloud, const ProjectSettings& settings = {},
+                                      const Vec3& lift = Vec3::Zero()) const {
+    Mat4 T = T_;
+    T.topRightCorner<3, 1>() += lift;
+    return project_path(path_, T, MeasuredSurface(cloud, approach_of(path_, T)), settings, kName);
+  }
+  [[nodiscard]] std::string refusal(const TriMesh& cloud, const Vec3& lift = Vec3::Zero()) const {
+    return testing::refusal_of<DataError>([&] { return project(cloud, {}, lift); });
+  }
+
+  Mat4 T_ = registration();
+  ToolPath path_ = simulated(T_.inverse());
+};
+
+TEST_F(ProjectPath, LaysTheIncisionOntoTheMeasuredSurface) {
+  const ProjectedPath projected = project(measured(0.2));
   EXPECT_EQ(projected.path.frame, PathFrame::Robot);
   EXPECT_EQ(projected.path.kind, PathKind::Incise);
   ASSERT_EQ(projected.path.waypoints.size(), 48U);
@@ -80,15 +93,11 @@ TEST(ProjectPath, LaysTheIncisionOntoTheMeasuredSurface) {
   }
   EXPECT_NEAR(projected.mean_shift_mm, 0.8, 0.05);
   EXPECT_LT(projected.max_gap_mm, 0.5);
-  EXPECT_EQ(projected.path.T_robot_sim, T);
+  EXPECT_EQ(projected.path.T_robot_sim, T_);
 }
 
-TEST(ProjectPath, MarksTheTumorEdgeOneMillimetreDeepAtTwoMillimetresASecond) {
-  const Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
-  const TriMesh cloud = measured();
-  const MeasuredSurface surface(cloud, approach_of(path, T));
-  const ProjectedPath projected = project_path(path, T, surface, {.kind = PathKind::Mark}, kName);
+TEST_F(ProjectPath, MarksTheTumorEdgeOneMillimetreDeepAtTwoMillimetresASecond) {
+  const ProjectedPath projected = project(measured(), {.kind = PathKind::Mark});
   EXPECT_EQ(projected.path.kind, PathKind::Mark);
   ASSERT_EQ(projected.path.waypoints.size(), 96U);
   for (const Waypoint& w : projected.path.waypoints) {
@@ -100,26 +109,19 @@ TEST(ProjectPath, MarksTheTumorEdgeOneMillimetreDeepAtTwoMillimetresASecond) {
   EXPECT_EQ(projected.path.tumor_edge.points.size(), 90U);
 }
 
-TEST(ProjectPath, HoldsTheToolAgainstTheMeasuredNormalWhereAsked) {
-  const Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
-  const TriMesh cloud = measured();
-  const MeasuredSurface surface(cloud, approach_of(path, T));
-  const ProjectedPath projected = project_path(path, T, surface, {.axis_mode = AxisMode::SurfaceNormal}, kName);
+TEST_F(ProjectPath, HoldsTheToolAgainstTheMeasuredNormalWhereAsked) {
+  const ProjectedPath projected = project(measured(), {.axis_mode = AxisMode::SurfaceNormal});
   for (const Waypoint& w : projected.path.waypoints) {
     const Vec3 normal = Vec3(w.position_mm.x() / 60.0, w.position_mm.y() / 60.0, 1.0).normalized();
     EXPECT_LT((w.axis + normal).norm(), 2e-3);
   }
 }
 
-TEST(ProjectPath, AveragesTheNormalsAsItDoesTheShifts) {
-  const Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
+TEST_F(ProjectPath, AveragesTheNormalsAsItDoesTheShifts) {
   const TriMesh cloud = measured(0.3);
-  const MeasuredSurface surface(cloud, approach_of(path, T));
   const auto greatest_nod_deg = [&](double smoothing_mm, double& off_deg) {
     const ProjectSettings settings{.smoothing_mm = smoothing_mm, .axis_mode = AxisMode::SurfaceNormal};
-    const auto waypoints = project_path(path, T, surface, settings, kName).path.waypoints;
+    const auto waypoints = project(cloud, settings).path.waypoints;
     const auto degrees = [](const Vec3& a, const Vec3& b) {
       return std::asin(std::min(1.0, a.cross(b).norm())) * 180.0 / 3.14159265;
     };
@@ -141,60 +143,42 @@ TEST(ProjectPath, AveragesTheNormalsAsItDoesTheShifts) {
   EXPECT_LT(nod_deg - 1.8, 0.5 * (alone_deg - 1.8));
 }
 
-std::string refusal(const TriMesh& cloud, const ProjectSettings& settings = {}, const Vec3& lift = Vec3::Zero()) {
-  Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
-  T.topRightCorner<3, 1>() += lift;
-  return testing::refusal_of<DataError>(
-      [&] { return project_path(path, T, MeasuredSurface(cloud, approach_of(path, T)), settings, kName); });
-}
-
-TEST(ProjectPath, ReportsGapsAndRefusesLargeOnes) {
-  const Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
-  const TriMesh holed = measured(0.0, 1.5);
-  const MeasuredSurface surface(holed, approach_of(path, T));
-  const ProjectedPath projected = project_path(path, T, surface, {}, kName);
+TEST_F(ProjectPath, ReportsGapsAndRefusesLargeOnes) {
+  const ProjectedPath projected = project(measured(0.0, 1.5));
   EXPECT_NEAR(projected.max_gap_mm, 1.5, 0.3);
   EXPECT_GT(projected.bridged, 0U);
   EXPECT_THAT(refusal(measured(0.0, 3.0)), ::testing::HasSubstr("a gap: the nearest measured point is"));
   EXPECT_EQ(refusal(measured(0.0, 1.5)), "accepted");
 }
 
-TEST(ProjectPath, RefusesAPathBesideOrFarFromTheSurface) {
-  EXPECT_THAT(refusal(measured(), {}, Vec3(25.0, 0.0, 0.0)), ::testing::AnyOf(::testing::HasSubstr("rim"), ::testing::HasSubstr("no measured surface")));
-  EXPECT_THAT(refusal(measured(), {}, Vec3(0.0, 0.0, 9.0)), ::testing::HasSubstr("above the measured surface"));
-  EXPECT_THAT(refusal(measured(), {}, Vec3(0.0, 0.0, -9.0)), ::testing::HasSubstr("below the measured surface"));
+TEST_F(ProjectPath, RefusesAPathBesideOrFarFromTheSurface) {
+  EXPECT_THAT(refusal(measured(), Vec3(25.0, 0.0, 0.0)), ::testing::AnyOf(::testing::HasSubstr("rim"), ::testing::HasSubstr("no measured surface")));
+  EXPECT_THAT(refusal(measured(), Vec3(0.0, 0.0, 9.0)), ::testing::HasSubstr("above the measured surface"));
+  EXPECT_THAT(refusal(measured(), Vec3(0.0, 0.0, -9.0)), ::testing::HasSubstr("below the measured surface"));
 }
 
-TEST(ProjectPath, TakesAMeshAsItIs) {
-  const Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
+TEST_F(ProjectPath, TakesAMeshAsItIs) {
   TriMesh mesh{.vertices = {Vec3(-50, -50, 15), Vec3(50, -50, 15), Vec3(50, 50, 15), Vec3(-50, 50, 15)}};
   // Turned the wrong way round on purpose: an open mesh has no outside.
   mesh.triangles = {{VertexId(0), VertexId(2), VertexId(1)}, {VertexId(0), VertexId(3), VertexId(2)}};
-  const MeasuredSurface surface(mesh, approach_of(path, T));
-  const ProjectedPath projected = project_path(path, T, surface, {.axis_mode = AxisMode::SurfaceNormal}, kName);
+  const ProjectedPath projected = project(mesh, {.axis_mode = AxisMode::SurfaceNormal});
   for (const Waypoint& w : projected.path.waypoints) {
     EXPECT_NEAR(w.position_mm.z(), 15.0, 1e-9);
     EXPECT_LT((w.axis + Vec3::UnitZ()).norm(), 1e-9);
   }
 }
 
-TEST(ProjectPath, RefusesATransformThatIsNoSimilarity) {
-  const Mat4 T = registration();
-  const ToolPath path = simulated(T.inverse());
-  const TriMesh cloud = measured();
-  const MeasuredSurface surface(cloud, -Vec3::UnitZ());
-  Mat4 sheared = T;
+TEST_F(ProjectPath, RefusesATransformThatIsNoSimilarity) {
+  const MeasuredSurface surface(measured(), -Vec3::UnitZ());
+  Mat4 sheared = T_;
   sheared.row(0) *= 1.1;
-  EXPECT_THROW(static_cast<void>(project_path(path, sheared, surface, {}, kName)), InvalidArgument);
-  Mat4 mirrored = T;
+  EXPECT_THROW(static_cast<void>(project_path(path_, sheared, surface, {}, kName)), InvalidArgument);
+  Mat4 mirrored = T_;
   mirrored.row(0) *= -1.0;
-  EXPECT_THROW(static_cast<void>(project_path(path, mirrored, surface, {}, kName)), InvalidArgument);
-  ToolPath rest = path;
+  EXPECT_THROW(static_cast<void>(project_path(path_, mirrored, surface, {}, kName)), InvalidArgument);
+  ToolPath rest = path_;
   rest.frame = PathFrame::SimRest;
-  EXPECT_THROW(static_cast<void>(project_path(rest, T, surface, {}, kName)), InvalidArgument);
+  EXPECT_THROW(static_cast<void>(project_path(rest, T_, surface, {}, kName)), InvalidArgument);
 }
 
 TEST(PlanMarkedPath, KeepsTheMarginAroundAMarkOnANoisyCloud) {
