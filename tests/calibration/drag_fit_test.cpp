@@ -10,7 +10,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <numeric>
 
 namespace incise {
 namespace {

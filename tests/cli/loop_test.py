@@ -2,14 +2,12 @@
 
 import json
 import signal
-import subprocess
-import time
 import unittest
 from xml.etree import ElementTree
 
 import meshio
 import small_case
-from command import COMMAND, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+from command import INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
 
 CUT_FILES = {"incision.json", "centerline.csv", "inner_edge.csv", "frames.pvd", "removed.vtu", "manifest.json",
              "kerf.vtp", "depth.csv", "lag.csv", "centerline_1mm.csv", "centerline_2.5mm.csv", "inner_edge_reference.csv"}

@@ -3,7 +3,6 @@
 #include <incise/robot/checks.hpp>
 
 #include <map>
-#include <memory>
 #include <string>
 
 namespace incise::testing {

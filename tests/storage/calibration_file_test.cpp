@@ -10,8 +10,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <fstream>
-
 namespace incise {
 namespace {
 

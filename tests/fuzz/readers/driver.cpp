@@ -18,7 +18,6 @@
 #include <exception>
 #include <fstream>
 #include <iterator>
-#include <map>
 
 namespace {
 
