@@ -6,7 +6,7 @@ import unittest
 
 import small_calibration
 import small_case
-from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+from command import BAD_CASE, BAD_DATA, DONE, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, SharedStart, files_below
 from sealed_json import sealed
 
 KEYS = ("advice", "reasons", "expected_gain_mm", "p_worse", "p_worse_if_alike", "p_worse_if_unlike", "p_unlike", "p_close_margin", "registration", "distances", "scenarios", "rules", "notes")
@@ -15,7 +15,7 @@ T_TARGET_SOURCE = [[SCALE, 0, 0, 0], [0, SCALE, 0, 0], [0, 0, SCALE, 0], [0, 0, 
 PULL_N = 27.0  # about what the block pulls at the case's modulus
 
 
-class AssessTest(CommandTest):
+class AssessTest(SharedStart, CommandTest):
     def setUp(self):
         super().setUp()
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}})
@@ -30,11 +30,15 @@ class AssessTest(CommandTest):
     def arguments(self, *options):
         return ("assess", "case", "--calibration", self.calibration, "--registration", "registration.json", "-o", self.out, *options)
 
+    def begin_assessed(self):
+        """As assessed with the pull, of what setUp writes."""
+        return self.begin(*self.arguments("--stretch-force-n", PULL_N))[0]
+
     def assessed(self, *options, status=DONE):
         return self.json_of(*self.arguments(*options), status=status)
 
     def test_a_specimen_like_the_calibrations_is_judged_by_its_gain(self):
-        found = self.assessed("--stretch-force-n", PULL_N)
+        found = self.begin_assessed()
         for key in KEYS:
             self.assertIn(key, found)
         # The block's mesh is too coarse for a correction below the electrode's radius; nothing else speaks against it.
@@ -71,7 +75,7 @@ class AssessTest(CommandTest):
         self.assertTrue(any("gain" in reason for reason in found["reasons"]), found["reasons"])
 
     def test_what_is_held_against_its_registration_is_held_against_the_specimen(self):
-        found = self.assessed("--stretch-force-n", PULL_N)
+        found = self.begin_assessed()
         self.assertNotIn("typed_transform", [reason["id"] for reason in found["verdict"]["reasons"]])
         self.registered(by=dict)
         done = self.incise(*self.arguments("--stretch-force-n", PULL_N, "--json"))
@@ -110,7 +114,7 @@ class AssessTest(CommandTest):
         self.assertTrue(any("refused" in reason for reason in found["reasons"]), found["reasons"])
 
     def test_a_pull_that_is_withheld_is_said_and_widens_what_is_believed(self):
-        known = self.assessed("--stretch-force-n", PULL_N)
+        known = self.begin_assessed()
         withheld = self.assessed()
         self.assertTrue(any("pull was not measured" in note for note in withheld["notes"]), withheld["notes"])
         self.assertEqual((len(known["scenarios"]["tissues"]), len(withheld["scenarios"]["tissues"])), (1, 3))
@@ -137,7 +141,7 @@ class AssessTest(CommandTest):
         self.assertFalse(any("virtual" in reason for reason in found["reasons"]), found["reasons"])
 
     def test_what_photographs_show_beyond_the_simulation_is_expected_of_this_cut(self):
-        plain = self.assessed("--stretch-force-n", PULL_N)
+        plain = self.begin_assessed()
 
         def farther_out(found):
             for one in found["fitted"]:

@@ -167,3 +167,28 @@ class CommandTest(unittest.TestCase):
         self.assertFalse(folder.exists(), f"left behind: {folder} {files_below(folder) if folder.is_dir() else ''}")
         # No temporary name beside it either.
         self.assertEqual([p.name for p in folder.parent.glob(f"*{folder.name}*")] if folder.parent.is_dir() else [], [])
+
+
+class SharedStart:
+    """For tests that begin with the same command: it runs for the first of a class, and the others get a copy of its folder, as any folder may be
+    copied."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        temporary = tempfile.TemporaryDirectory(prefix="incise_cli_")
+        cls.addClassCleanup(temporary.cleanup)
+        cls.kept, cls.starts = pathlib.Path(temporary.name), {}
+
+    def begin(self, *arguments, status=DONE):
+        """What a command prints with --json, and what it says, in a folder as it leaves it. Whoever asks has written the same files before."""
+        here = str(self.folder)
+        key = " ".join(map(str, arguments)).replace(here, ".")
+        if key in self.starts:
+            copy, there, done = self.starts[key]
+            shutil.copytree(copy, self.folder, dirs_exist_ok=True)
+        else:
+            copy, there, done = self.kept / str(len(self.starts)), here, self.incise(*arguments, "--json", status=status)
+            shutil.copytree(self.folder, copy)
+            self.starts[key] = (copy, there, done)
+        return json.loads(done.stdout.replace(there, here)), done.stderr.replace(there, here)

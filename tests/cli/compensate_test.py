@@ -2,16 +2,17 @@
 
 import csv
 import json
+import shutil
 import unittest
 
 import small_case
-from command import BAD_CASE, DONE, NOT_ACCEPTABLE, CommandTest, files_below
+from command import BAD_CASE, DONE, NOT_ACCEPTABLE, CommandTest, SharedStart, files_below
 
 KEYS = ("outcome", "accepted", "passes", "simulations", "contraction", "compensation_outcome", "floor_mm", "before", "after", "correction",
         "folder", "path", "figures", "stages")
 
 
-class CompensateTest(CommandTest):
+class CompensateTest(SharedStart, CommandTest):
     def setUp(self):
         super().setUp()
         # The mesh of 3 mm leaves more than half a needle of error, so the paper's rule does not accept what a finer one would.
@@ -20,12 +21,15 @@ class CompensateTest(CommandTest):
     def compensated(self, *options, status=NOT_ACCEPTABLE):
         return self.json_of("compensate", "case", "-o", self.out, *options, status=status)
 
+    def begin_with_the_default(self):
+        return self.begin("compensate", "case", "-o", self.out, status=NOT_ACCEPTABLE)[0]
+
     def rows(self, name):
         with open(self.out / "correction" / name, newline="") as file:
             return list(csv.DictReader(file))
 
     def test_the_default_makes_at_most_four_cuts_and_keeps_the_best(self):
-        result = self.compensated()
+        result = self.begin_with_the_default()
         for key in KEYS:
             self.assertIn(key, result)
         history = result["correction"]["history"]
@@ -44,7 +48,7 @@ class CompensateTest(CommandTest):
         self.assertGreater(errors[best], 0.5, "the needle's radius")
 
     def test_its_files_hold_every_pass_and_nothing_of_the_way_is_left(self):
-        result = self.compensated()
+        result = self.begin_with_the_default()
         passes = {str(k) for k in range(result["simulations"])}
         self.assertEqual({row["pass"] for row in self.rows("history.csv")}, passes)
         self.assertEqual({row["pass"] for row in self.rows("errors.csv")}, passes)
@@ -61,21 +65,20 @@ class CompensateTest(CommandTest):
         self.assertEqual(manifest["settings"]["compensation.method"], "default")
 
     def test_a_second_run_reads_what_the_first_one_found(self):
-        first = self.compensated()
+        first = self.begin_with_the_default()
         second = self.compensated()
         self.assertEqual({stage["state"] for stage in second["stages"]} - {"skipped"}, {"reused"})
         for key in ("accepted", "passes", "contraction", "compensation_outcome", "floor_mm", "correction"):
             self.assertEqual(first[key], second[key], key)
 
     def test_a_corrected_cut_that_was_removed_is_made_again(self):
-        import shutil
-        first = self.compensated()
+        first = self.begin_with_the_default()
         shutil.rmtree(self.out / "corrected")
         second = self.compensated()
         self.assertEqual(first["after"]["abs_error_mm"], second["after"]["abs_error_mm"])
 
     def test_the_papers_method_is_one_pass_and_another_product(self):
-        default = self.compensated()
+        default = self.begin_with_the_default()
         paper = self.compensated("--method", "paper")
         self.assertEqual((paper["passes"], paper["simulations"]), (1, 2))
         self.assertEqual(paper["correction"]["method"], "paper")

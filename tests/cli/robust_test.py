@@ -5,29 +5,33 @@ import unittest
 
 import small_calibration
 import small_case
-from command import BAD_CASE, BAD_DATA, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, files_below
+from command import BAD_CASE, BAD_DATA, INTERRUPTED, NOT_ACCEPTABLE, CommandTest, SharedStart, files_below
 
 RISK = {"expected_abs_error_mm", "abs_error_80_mm", "abs_error_95_mm", "p_close_margin", "unmeasured_weight"}
 CUTS = "tissue of the calibration: 1 cut along a path, "
 
 
-class RobustTest(CommandTest):
+class RobustTest(SharedStart, CommandTest):
     def setUp(self):
         super().setUp()
         # The mesh of 3 mm leaves more than the electrode's radius of error, so no correction of it is accepted (status 4).
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}})
         self.calibration = small_calibration.write(self.folder / "calibration.json")
 
-    def compensate(self, *options):
-        return self.incise("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, *options)
+    def compensate(self, *options, status=None):
+        return self.incise("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, *options, status=status)
+
+    def begin_robust(self, *options):
+        """As robust, of the case and the calibration that setUp writes."""
+        found, said = self.begin("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, *options, status=NOT_ACCEPTABLE)
+        return found["robust"], said
 
     def robust(self, *options):
-        done = self.compensate("--json", *options)
-        self.assertEqual(done.returncode, NOT_ACCEPTABLE, done.stderr)
+        done = self.compensate("--json", *options, status=NOT_ACCEPTABLE)
         return json.loads(done.stdout)["robust"], done.stderr
 
     def test_three_paths_and_none_is_cut_twice(self):
-        found, said = self.robust("--stretch-force-n", 27)
+        found, said = self.begin_robust("--stretch-force-n", 27)
         for path in ("intended", "corrected", "robust"):
             self.assertEqual(set(found[path]), RISK)
             self.assertEqual(found[path]["unmeasured_weight"], 0.0)
@@ -55,7 +59,7 @@ class RobustTest(CommandTest):
         self.assertEqual({key: again[key] for key in again if key != "wall_s"}, {key: found[key] for key in found if key != "wall_s"})
 
     def test_a_virtual_calibration_for_a_real_specimen_is_told(self):
-        _, said = self.robust("--stretch-force-n", 27)
+        _, said = self.begin_robust("--stretch-force-n", 27)
         self.assertNotIn("virtual specimens", said)
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.2}, "specimen_is": "real"})
         _, said = self.robust("--stretch-force-n", 27)
@@ -79,7 +83,7 @@ class RobustTest(CommandTest):
         self.assertIn("warning: robust path: not_met", said)
 
     def test_without_the_pull_stiffness_is_less_sure(self):
-        without, _ = self.robust()
+        without, _ = self.begin_robust()
         self.assertEqual(without["scenarios"]["own_stiffness_sd"], 0.5)
         self.assertEqual(without["scenarios"]["reference_kpa"], 70.0)
         factors = [tissue["stiffness_factor"] for tissue in without["scenarios"]["tissues"]]
@@ -95,7 +99,7 @@ class RobustTest(CommandTest):
         self.robust()
 
     def test_another_correction_takes_the_robust_path_of_the_older_one_away(self):
-        self.robust()
+        self.begin_robust()
         self.assertTrue((self.out / "robust").exists())
         small_case.write_case(self.folder / "case", {"compensation": {"observable": "inner_edge", "bias_mm": 0.5}})
         self.incise("compensate", "case", "-o", self.out)

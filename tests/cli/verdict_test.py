@@ -1,41 +1,26 @@
 """One verdict wherever a cut is shown, and no robot program against it."""
 
 import json
-import pathlib
-import shutil
-import tempfile
 import unittest
 
 import small_case
-from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest
+from command import BAD_CASE, BAD_DATA, DONE, NOT_ACCEPTABLE, CommandTest, SharedStart
 
 
 def ids(verdict, severity=None):
     return [reason["id"] for reason in verdict["reasons"] if severity in (None, reason["severity"])]
 
 
-class VerdictTest(CommandTest):
+class VerdictTest(SharedStart, CommandTest):
     def write(self, changes=small_case.SOUND):
         case = small_case.write_case(self.folder / "case", changes)
         small_case.write_tumor_surface(case / "tumor.stl")
         return case
 
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        temporary = tempfile.TemporaryDirectory(prefix="incise_cli_")
-        cls.addClassCleanup(temporary.cleanup)
-        cls.made, cls.printed = pathlib.Path(temporary.name) / "made", None
-
     def begin_with_a_run(self):
-        """The sound case and a run of it whose cautions are accepted: made once, then copied, as any folder may be. Returns what it printed."""
-        if self.printed is None:
-            self.write()
-            type(self).printed = self.run_case(*small_case.ACCEPTED, status=DONE)
-            shutil.copytree(self.folder, self.made)
-        else:
-            shutil.copytree(self.made, self.folder, dirs_exist_ok=True)
-        return self.printed
+        """The sound case and a run of it whose cautions are accepted. Returns what it printed."""
+        self.write()
+        return self.begin("run", "case", "-o", self.out, *small_case.ACCEPTED)[0]
 
     def read(self, name):
         return json.loads((self.out / name).read_text())
