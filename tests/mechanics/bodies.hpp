@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/random.hpp>
+#include <incise/mechanics/statics.hpp>
 #include <incise/mechanics/tissue.hpp>
 
 #include <algorithm>
@@ -88,6 +89,14 @@ Eigen::MatrixXd force_differences(const TissueState& start, double step, const F
     }
   }
   return result;
+}
+
+/// The static solution of a body that nobody watches.
+inline StaticResult solve(const TissueModel& model, const StaticSettings& settings = {}, int threads = 1,
+                          const TissueState* start = nullptr) {
+  Workers workers(threads);
+  Monitor silent;
+  return solve_static(model, settings, workers, silent, start);
 }
 
 inline double norm(std::span<const Vec3> vectors) {

@@ -17,6 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 using testing::plane_x;
 using testing::plane_z;
+using testing::solve;
 
 /// Largest penetration that a support may allow, mm.
 constexpr double kPenetrationMm = 0.05;
@@ -57,12 +58,6 @@ TissueModel resting_block(const SupportConstraint& support, double z = 0.0, cons
   for (Vec3& p : mesh.vertices) p[2] += z;
   Material material{.poissons_ratio = 0.45};
   return make_tissue_model(std::move(mesh), material, {FixedConstraint{plane_x(0.0)}, support}, gravity);
-}
-
-StaticResult solve(const TissueModel& model) {
-  Workers workers(1);
-  Monitor monitor;
-  return solve_static(model, {}, workers, monitor);
 }
 
 Vec3 imbalance(const TissueModel& model, const StaticResult& result) {

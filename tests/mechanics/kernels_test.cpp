@@ -149,10 +149,7 @@ TEST_P(Kernels, FindTheSameEquilibrium) {
       {FixedConstraint{testing::plane_x(0.0)}, DisplacedConstraint{testing::plane_x(40.0), Vec3(8, 2, 0)}});
   const auto solve = [&](Isa isa) {
     set_isa(isa);
-    Workers workers(1);
-    Monitor monitor;
-    StaticSettings settings{.relative_tolerance = 1e-10};
-    return solve_static(model, settings, workers, monitor);
+    return testing::solve(model, {.relative_tolerance = 1e-10});
   };
   const StaticResult found = solve(GetParam());
   const StaticResult expected = solve(Isa::Portable);

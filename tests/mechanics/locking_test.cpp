@@ -1,6 +1,5 @@
 #include "mechanics/bodies.hpp"
 
-#include <incise/core/monitor.hpp>
 #include <incise/mechanics/statics.hpp>
 
 #include <gtest/gtest.h>
@@ -23,9 +22,7 @@ double rise_of_cooks_membrane(MaterialModel law, VolumeTreatment volume, int n) 
       make_tissue_model(std::move(mesh), material,
                         {FixedConstraint{plane_x(0.0)}, FixedConstraint{everywhere, {false, false, true}},
                          TractionConstraint{plane_x(48.0), Vec3(0, kTraction, 0)}});
-  Workers workers(1);
-  Monitor monitor;
-  const StaticResult result = solve_static(model, StaticSettings{}, workers, monitor);
+  const StaticResult result = testing::solve(model);
   EXPECT_EQ(result.outcome, Outcome::Success);
   const std::vector<VertexId> corner = select(model.mesh, SphereRegion{Vec3(48, 60, 0), 1e-6});
   EXPECT_EQ(corner.size(), 1U);

@@ -2,7 +2,6 @@
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
-#include <incise/core/monitor.hpp>
 #include <incise/mechanics/statics.hpp>
 
 #include <gmock/gmock.h>
@@ -47,9 +46,7 @@ TEST(MaterialField, MakesATumourTenTimesStiffer) {
     const TissueModel model = make_tissue_model(
         mesh, material, {FixedConstraint{plane_x(0.0)}, DisplacedConstraint{plane_x(20.0), Vec3(pull, 0, 0)}},
         Vec3::Zero(), field);
-    Workers workers(1);
-    Monitor monitor;
-    const StaticResult result = solve_static(model, StaticSettings{}, workers, monitor);
+    const StaticResult result = testing::solve(model);
     ASSERT_EQ(result.outcome, Outcome::Success);
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
       if (mesh.vertices[v][0] != 10.0) continue;

@@ -150,9 +150,7 @@ TEST(AdvanceMotion, DampingIsTheSameForceInEveryNewtonIteration) {
 
 TEST(AdvanceMotion, QuasiStaticStepsEndInStaticEquilibrium) {
   const TissueModel model = heavy_block();
-  Workers workers(1);
-  Monitor monitor;
-  const StaticResult expected = solve_static(model, {}, workers, monitor);
+  const StaticResult expected = testing::solve(model);
   ASSERT_EQ(expected.outcome, Outcome::Success);
   MotionSettings settings{.has_inertia = false, .max_newton_iterations = 30};
   Motion motion = motion_at_rest(model, rest_state(model));

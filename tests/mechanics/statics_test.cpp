@@ -16,6 +16,7 @@ namespace {
 using testing::largest;
 using testing::plane_x;
 using testing::plane_z;
+using testing::solve;
 
 /// The paper's specimen as a block: one end clamped, the other pulled, the underside on a platform.
 TissueModel pulled_block(double pull_mm, std::array<int, 3> cells = {10, 5, 4}, const Vec3& gravity = Vec3::Zero()) {
@@ -23,13 +24,6 @@ TissueModel pulled_block(double pull_mm, std::array<int, 3> cells = {10, 5, 4}, 
                            {FixedConstraint{plane_x(0.0)}, DisplacedConstraint{plane_x(100.0), Vec3(pull_mm, 0, 0)},
                             SupportConstraint{Vec3::Zero(), Vec3::UnitZ()}},
                            gravity);
-}
-
-StaticResult solve(const TissueModel& model, const StaticSettings& settings = {}, int threads = 1,
-                   const TissueState* start = nullptr) {
-  Workers workers(threads);
-  Monitor monitor;
-  return solve_static(model, settings, workers, monitor, start);
 }
 
 TEST(SolveStatic, StretchesBy20MmFromRestInOneLoadStep) {

@@ -170,9 +170,7 @@ TEST(StiffeningTissue, FindsItsEquilibriumWhenItIsPulled) {
         irregular_block(kBarMm, {4, 4, 4}, 0.2, 3), material,
         {FixedConstraint{plane_x(0.0)}, DisplacedConstraint{plane_x(kBarMm.x()), Vec3(0.5 * kBarMm.x(), 0, 0)}},
         Vec3::Zero());
-    Workers workers(1);
-    Monitor silent;
-    const StaticResult result = solve_static(model, StaticSettings{}, workers, silent);
+    const StaticResult result = testing::solve(model);
     EXPECT_EQ(result.outcome, Outcome::Success) << stiffening << ", " << fibre_stiffening;
     return elastic_energy_uj(model, result.state);
   };

@@ -24,10 +24,7 @@ std::vector<Constraint> symmetry() {
 }
 
 StaticResult solve(const TissueModel& model) {
-  Workers workers(1);
-  Monitor monitor;
-  StaticSettings settings{.relative_tolerance = 1e-10};
-  return solve_static(model, settings, workers, monitor);
+  return testing::solve(model, {.relative_tolerance = 1e-10});
 }
 
 TEST(Bar, UnderUniaxialTractionStretchesByTractionOverYoungsModulus) {

@@ -82,10 +82,7 @@ void expect_field(const TissueModel& model, const Points& positions, const Point
 }
 
 StaticResult solve(const TissueModel& model) {
-  Workers workers(1);
-  Monitor monitor;
-  StaticSettings settings{.relative_tolerance = 1e-11};
-  return solve_static(model, settings, workers, monitor);
+  return testing::solve(model, {.relative_tolerance = 1e-11});
 }
 
 TEST(SofaBlock, StretchOf20MmAgreesToThePrintedDigits) {
