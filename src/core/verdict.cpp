@@ -1,5 +1,6 @@
 #include <incise/core/defaults.hpp>
 #include <incise/core/error.hpp>
+#include <incise/core/utf8.hpp>
 #include <incise/core/verdict.hpp>
 
 #include <fmt/format.h>
@@ -14,7 +15,6 @@ namespace {
 constexpr VerdictStatus kCaution = VerdictStatus::Caution;
 constexpr VerdictStatus kRefused = VerdictStatus::Refused;
 constexpr std::optional<double> kNoLimit;
-constexpr std::size_t kShownCharacters = 40;
 constexpr std::size_t kMostReasons = 1000;
 
 // The one table of limits. Change it together with docs/models/verdict.md.
@@ -109,7 +109,7 @@ void describe(Visitor& v, VerdictReason& reason) {
   v("id", reason.id, "Id of its rule in the table of limits.");
   const auto rule = std::find_if(kRules.begin(), kRules.end(), [&](const VerdictRule& r) { return r.id == reason.id; });
   if (v.sets() && rule == kRules.end())
-    v.refuse({"id"}, "'" + reason.id.substr(0, kShownCharacters) + "'", "the id of a rule of the verdict");
+    v.refuse({"id"}, fmt::format("'{}'", utf8_prefix(reason.id, 40)), "the id of a rule of the verdict");
   v("severity", reason.severity, "Severity of its rule.");
   if (v.sets() && reason.severity != rule->severity) {
     v.refuse({"severity"}, std::string(to_string(reason.severity)), std::string(to_string(rule->severity)));

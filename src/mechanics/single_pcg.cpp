@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace incise {
@@ -51,6 +52,7 @@ SinglePcg::SinglePcg(std::shared_ptr<const BlockPattern> pattern, const CoarseSp
   values_ = zeros_in_large_pages<std::int16_t>(9 * column_.size() + kBeyondBlocks);
   scale_.assign(count, 0.0F);
   is_stale_.assign(count, 1);
+  is_too_large_.assign(count, 0);
   left_.assign(9 * count + kBeyondBlocks, 0.0F);
   inverse_diagonal_.assign(12 * count, 0.0F);
   for (std::vector<float>* vector : {&arm_, &is_free_, &x_, &r_, &z_, &p_, &q_, &scaled_p_})
@@ -123,11 +125,10 @@ bool SinglePcg::round_row(const BlockMatrix& matrix, std::size_t row) {
 void SinglePcg::update(const BlockMatrix& matrix, std::span<const Mat3> inverse_diagonal, const CoarseSpace& coarse,
                        bool has_new_coarse, std::span<const std::uint8_t> changed_rows, Workers& workers) {
   rescale(matrix, changed_rows, workers);
-  is_indefinite_ = false;
   for_aggregates(workers, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (auto i = static_cast<std::size_t>(start_[begin]); i < static_cast<std::size_t>(start_[end]); ++i) {
       if (is_stale_[i] == 0) continue;
-      if (!round_row(matrix, i)) is_indefinite_ = true;
+      is_too_large_[i] = round_row(matrix, i) ? 0 : 1;
       const auto v = static_cast<std::size_t>(vertex_[i]);
       for (std::size_t column = 0; column < 3; ++column) {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -238,7 +239,7 @@ void SinglePcg::turn(float beta, Workers& workers) {
 }
 
 PcgReport SinglePcg::solve(std::span<const Vec3> b, std::span<Vec3> x, const PcgSettings& settings, Workers& workers) {
-  if (is_indefinite_) {
+  if (std::ranges::any_of(is_too_large_, [](std::uint8_t flag) { return flag != 0; })) {
     std::fill(x.begin(), x.end(), Vec3::Zero());
     PcgReport report;
     report.is_indefinite = true;

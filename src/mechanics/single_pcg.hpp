@@ -7,7 +7,6 @@
 #include <incise/mechanics/block_matrix.hpp>
 #include <incise/mechanics/solvers.hpp>
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -51,10 +50,10 @@ class SinglePcg {
   std::vector<std::int16_t> values_;       ///< 9 per own slot, and room beyond the end
   std::vector<float> scale_;               ///< s, per vertex
   std::vector<float> left_;  ///< 9 per vertex: rounding errors of the row, summed, in units of s_i s_i / kWholeOne
-  std::vector<std::uint8_t> is_stale_;       ///< per vertex: its row must be rounded again
-  std::atomic<bool> is_indefinite_ = false;  ///< a number was too large for a positive semi-definite matrix
-  std::vector<float> inverse_diagonal_;      ///< 12 per vertex: three columns of four
-  std::vector<float> arm_, is_free_;         ///< 4 per vertex
+  std::vector<std::uint8_t> is_stale_;      ///< per vertex: its row must be rounded again
+  std::vector<std::uint8_t> is_too_large_;  ///< per vertex: its row has a number too large for a semi-definite matrix
+  std::vector<float> inverse_diagonal_;     ///< 12 per vertex: three columns of four
+  std::vector<float> arm_, is_free_;        ///< 4 per vertex
   bool is_coarse_dense_;
   bool has_last_ = false;  ///< x_ is the converged solution of the last solve, with the same coarse matrix
   std::vector<float> coarse_;                        ///< n x n, if the coarse inverse is dense

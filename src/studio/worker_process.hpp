@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>  // used by awaitable.hpp of Boost 1.74, which does not include it
+
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>

@@ -255,6 +255,9 @@ TEST(TwoLevelPcg, InSinglePrecisionRefusesAMatrixWhoseNumbersProveItIndefinite) 
   EXPECT_TRUE(report.is_indefinite);
   EXPECT_FALSE(report.converged);
   EXPECT_EQ(norm(x), 0.0);
+  // An update that leaves those rows as they are does not make the matrix definite.
+  solver.update(system.matrix, false, workers, std::vector<std::uint8_t>(pattern.rows(), 0));
+  EXPECT_TRUE(solver.solve(system.matrix, system.right, x, {}, workers).is_indefinite);
 }
 
 TEST(TwoLevelPcg, InSinglePrecisionTakesAsManyIterationsAsInDouble) {
