@@ -74,8 +74,8 @@ double read_seconds(std::size_t bytes, Workers& workers) {
   return seconds[10];
 }
 
-/// y = A x. `over_read` is the median time over that of reading as many bytes with the
-/// same threads, in the same run. Accuracy: the error against sums in long double, relative to the largest component.
+/// y = A x. `over_read` is the median time over that of reading as many bytes with the same threads, in the same run.
+/// Accuracy: the error against sums in long double, relative to the largest component.
 void BlockProduct(benchmark::State& timing) {
   const TissueModel model = pulled_block(static_cast<double>(timing.range(0)));
   Workers workers(static_cast<int>(timing.range(1)));
