@@ -70,6 +70,7 @@ std::string to_text(const Finding& finding) {
       "pooled sd {found:g} is more than its parts allow, {bound:.4g}",
       "pooled sd {found:g} is less than its parts allow, {bound:.4g}",
       "score {found:g} % does not follow from mean, max and the baseline; the nearest is {bound:.4g} %"};
+  static_assert(kPatterns.back() != nullptr, "a sentence for each rule");
   return (finding.group.empty() ? "" : finding.group + ": ") +
          fmt::format(fmt::runtime(kPatterns.at(static_cast<std::size_t>(finding.rule))),
                      fmt::arg("found", finding.printed), fmt::arg("bound", finding.bound));

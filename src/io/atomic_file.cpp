@@ -238,7 +238,7 @@ std::string read_text(const fs::path& path) {
 void make_folder(const fs::path& folder, const char* expected) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder))
+  if (error || !fs::is_directory(folder, error))
     throw DataError(folder, "", error ? system_reason(error) : "something that is not a folder", expected);
 }
 

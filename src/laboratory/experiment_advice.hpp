@@ -57,7 +57,9 @@ void describe(Visitor& v, AdvisedSpecimen& s);
 /// gain contain the photographed values).
 [[nodiscard]] nlohmann::ordered_json advice_scores(const std::vector<AdvisedSpecimen>& specimens);
 
-/// As advice_scores, for an experiment's trials; `skipped` lists those that were not assessed and cut twice.
+/// As advice_scores, for an experiment's trials; `skipped` lists those that were not assessed and cut twice. Only the
+/// bench's truth, never the way a specimen was drawn, decides which cut was worse.
+/// @param truth  folder with the truth of each cut: NAME_planned/cut_truth.json, NAME_corrected, NAME_withheld.
 [[nodiscard]] nlohmann::ordered_json hold_advice_against_truth(const std::vector<Trial>& trials,
                                                                const std::filesystem::path& truth);
 
