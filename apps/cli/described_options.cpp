@@ -70,8 +70,7 @@ class OneField : public Visitor {
     expected = fmt::format("one of: {}", fmt::join(names, ", "));
     if (sets()) {
       const auto found = std::find(names.begin(), names.end(), texts_->front());
-      if (found == names.end())
-        throw CaseError("command line", option_name(name_), "'" + texts_->front() + "'", expected);
+      if (found == names.end()) refuse_text(texts_->front(), fmt::format("one of {}", fmt::join(names, ", ")));
       value = static_cast<std::size_t>(found - names.begin());
     }
     shown = std::string(names[value]);

@@ -2,6 +2,7 @@
 #include "option_checks.hpp"
 #include "options.hpp"
 
+#include <incise/io/specimen_id.hpp>
 #include <incise/steps/cut_steps.hpp>
 
 namespace incise::cli {
@@ -27,6 +28,14 @@ void add_evaluate(Application& application) {
   verb->add_option("photo", a.photo, "Top view of the cut (.png, .jpg, .tif): red incision, green tumour edge");
   add_options_of(*verb, a, "specimen_id", "incision", "tumor", "line", "contour", "red", "mm_per_pixel", "ruler",
                  "ruler_mm");
+  // An empty id, as of a shell variable that is not set, is not the same as none.
+  verb->get_option("--specimen-id")
+      ->check(CLI::Validator(
+          [](std::string& id) {
+            if (id.empty()) refuse_value("--specimen-id", id, std::string(kSpecimenIdForm));
+            return std::string();
+          },
+          ""));
   verb->add_option("--two-points", a.scale.two_points, "Scale from two pixels and their distance: U V U V MM")
       ->expected(5);
   verb->add_option("--rectangle", a.scale.rectangle,

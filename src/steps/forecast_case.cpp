@@ -24,8 +24,9 @@ ForecastJson forecast_json(const CalibratedBelief& belief, const RingCovariates&
   json["converged"] = forecaster.is_converged();
   json["spreads"] = to_json(forecaster.spreads());
   json["hand_eye"] = to_json(forecaster.hand_eye());
-  json["compensation"] = {{"method", "profile"}, {"photographed_mm", forecast.residual_mm}};
-  if (with_simulation)
+  if (!with_simulation)
+    json["compensation"] = {{"method", "profile"}, {"photographed_mm", forecast.residual_mm}};
+  else
     json["compensation"] = {{"observable", "inner_edge"},
                             {"bias_mm", tissue_scenarios(belief.samples, 0.0).front().bias_mm},
                             {"simulated_share", forecast.simulated_share},

@@ -153,8 +153,9 @@ class SpecimenIdTest(CommandTest):
         done = self.incise("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--contour", "inner_edge", "--specimen-id", OTHER, "-o", "cut.json")
         self.assertIn(done.returncode, (DONE, NOT_ACCEPTABLE), done.stderr)
         self.assert_other_specimen(self.incise("calibrate", case, "--observed", "cut.json", "-o", self.out), "cut.json")
-        self.assert_refused(self.incise("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--specimen-id", "a b", "-o", "cut.json"), BAD_CASE,
-                            "--specimen-id: found 'a b', expected 1 to 64 letters")
+        for none in ("a b", ""):
+            self.assert_refused(self.incise("evaluate", "--incision", "cut.csv", "--tumor", "edge.csv", "--specimen-id", none, "-o", "cut.json"), BAD_CASE,
+                                f"--specimen-id: found '{none}', expected 1 to 64 letters")
 
     def test_evaluate_takes_no_other_id_than_its_files_state(self):
         for name, radius in (("cut", 8.6), ("edge", small_case.TUMOR_RADIUS_MM)):

@@ -16,7 +16,7 @@ export function newPhoto() {
 
 /** A cloud's settings before one is chosen. `from`: "cloud", or "frame" of a colour and depth camera; `isOfFrame`:
  *  whether the chosen one is such a frame's; `frame`: where its coordinates are: "robot" or "camera". */
-export function newCloud() {
+function newCloud() {
   return {
     from: "cloud",
     file: null,
@@ -32,7 +32,7 @@ export function newCloud() {
 
 /** A frame of a colour and depth camera before its files are chosen. `isCloud`: it is one organised, coloured cloud;
  *  `planes`: how many flat things are taken out of its cloud. */
-export function newFraming() {
+function newFraming() {
   const files = {color: null, depth: null, intrinsics: null, organised: null};
   return {...files, isCloud: false, mark: "green", isOpen: false, planes: 1};
 }

@@ -10,7 +10,7 @@ import {fixed, isNumber, kStepTitles, kWaysOut, nameOf, plain, spoken, whole} fr
 let lastId = 0;
 
 /** An id for an element, the same for as long as its component lives. */
-export function useId(stem) {
+function useId(stem) {
   return useState(() => `${stem}-${++lastId}`)[0];
 }
 
