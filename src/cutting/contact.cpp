@@ -185,10 +185,13 @@ Moment least_moment(const Over& over, double from, double to) {
 
 double distance_to_core(const std::array<Vec3, 4>& tet, const ToolCore& core) {
   const std::span<const Vec3> corners = core.corners();
-  return corners.size() <= 2 ? distance_to_segment(tet, corners.front(), corners.back()) : distance_to_rectangle(tet, corners);
+  return corners.size() <= 2 ? distance_to_segment(tet, corners.front(), corners.back())
+                             : distance_to_rectangle(tet, corners);
 }
 
-double distance_to_core(const Vec3& point, const ToolCore& core) { return std::sqrt(point_core_squared(point, core)); }
+double distance_to_core(const Vec3& point, const ToolCore& core) {
+  return std::sqrt(point_core_squared(point, core));
+}
 
 double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b) {
   if (meets(tet, a, b)) return 0.0;

@@ -160,7 +160,8 @@ class Server {
     acceptor_.bind(here, failed);
     if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
     if (failed)
-      throw CaseError("command line", "--port", fmt::format("{} ({})", settings.port, system_reason(failed)), "a free port");
+      throw CaseError("command line", "--port", fmt::format("{} ({})", settings.port, system_reason(failed)),
+                      "a free port");
     asio::co_spawn(io_, accept(), asio::detached);
   }
 

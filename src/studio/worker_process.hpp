@@ -1,6 +1,8 @@
 #pragma once
 
+// clang-format off
 #include <utility>  // used by awaitable.hpp of Boost 1.74, which does not include it
+// clang-format on
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
