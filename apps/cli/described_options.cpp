@@ -44,6 +44,7 @@ class OneField : public Visitor {
   void number(const Field& field, double& value, const Range& range) override {
     if (!is_it(field, "FLOAT", range)) return;
     if (sets()) value = number_from(texts_->front(), range);
+    is_absent = is_absent || !contains(range, value);  // such as a scale of 0: not given
     shown = fmt::format("{}", value);
   }
   void integer(const Field& field, std::int64_t& value, const Range& range) override {
@@ -134,10 +135,8 @@ CLI::Option* add_option_of(CLI::App& verb, std::string_view field, const std::fu
   walk(known);
   INCISE_REQUIRE(known.is_found, fmt::format("expected a field of these settings, found {}", field));
   std::string help = known.meaning;
-  if (!known.expected.empty()) {
-    if (help.ends_with('.')) help.pop_back();
-    help += fmt::format(" ({})", known.expected);
-  }
+  if (help.ends_with('.')) help.pop_back();
+  if (!known.expected.empty()) help += fmt::format(" ({})", known.expected);
   const auto set = [walk, name = std::string(field)](const std::vector<std::string>& texts) {
     OneField one(name, &texts);
     walk(one);

@@ -37,12 +37,16 @@ void add_evaluate(Application& application) {
           },
           ""));
   verb->add_option("--two-points", a.scale.two_points, "Scale from two pixels and their distance: U V U V MM")
-      ->expected(5);
+      ->expected(5)
+      ->default_str("");
   verb->add_option("--rectangle", a.scale.rectangle,
                    "Scale and perspective from the corners of a rectangle: lower left, lower right, upper right, upper "
                    "left, as U V pairs")
-      ->expected(8);
-  verb->add_option("--rectangle-mm", a.scale.rectangle_mm, "Width and height of the rectangle")->expected(2);
+      ->expected(8)
+      ->default_str("");
+  verb->add_option("--rectangle-mm", a.scale.rectangle_mm, "Width and height of the rectangle")
+      ->expected(2)
+      ->default_str("");
   add_options_of(*verb, a.settings, "target_mm", "close_margin_mm", "twelve_o_clock");
   add_options_of(*verb, a, "max_gap_mm", "figure", "colors", "open");
   verb->add_option_function<std::vector<double>>(
