@@ -8,7 +8,7 @@
 
 namespace incise::testing {
 
-/// Keeps what it is told; stops on request.
+/// Records every message and progress report; stops on request.
 class RecordingMonitor : public Monitor {
  public:
   void message(Severity severity, std::string_view text) override {
@@ -28,7 +28,7 @@ class RecordingMonitor : public Monitor {
   bool stop = false;
 };
 
-/// Asks to stop once it was told of progress so many times: by default at once.
+/// Requests a stop after so many progress reports; by default at once.
 class StopAfter : public Monitor {
  public:
   explicit StopAfter(int steps = 0) : left_(steps) {}
