@@ -48,8 +48,10 @@ class OneField : public Visitor {
     shown = fmt::format("{}", value);
   }
   void integer(const Field& field, std::int64_t& value, const Range& range) override {
-    if (is_in_list_) describe_it(field, "INT", range);
-    if (!is_in_list_ && !is_it(field, "INT", range)) return;
+    if (is_in_list_)
+      describe_it(field, "INT", range);  // the list itself was found by begin_list
+    else if (!is_it(field, "INT", range))
+      return;
     if (sets()) {
       const std::string& text = texts_->at(is_in_list_ ? item_++ : 0);
       const auto whole = whole_number_in<std::int64_t>(text);

@@ -87,7 +87,7 @@ class Application {
   /// @param what  shown in --help if the line in the list of verbs (verb_list.cpp) does not say all; else "".
   /// @param example  shown at the end of --help.
   /// @param run  takes the verb's own options, then the common ones.
-  /// @param group  that the verb is added to, see add_group.
+  /// @param group  of verbs to add it to (add_group); null: the command itself.
   template <typename Arguments, typename Run>
   std::pair<CLI::App*, Arguments&> add_verb(const std::string& name, const std::string& what,
                                             const std::string& example, Run run, CLI::App* group = nullptr) {

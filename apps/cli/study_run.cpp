@@ -31,23 +31,26 @@ void add_cut_options(CLI::App& verb, CutOptions& options) {
       ->check(CLI::Range(0.0, kLongestCheckpointS));
 }
 
-steps::CaseRequest case_request(const CaseArguments& of, Stage until, const CommonOptions& options) {
-  CaseFile file = read_case_with_inputs(of.case_path);
-  if (of.cut.frames) file.settings.frames = *of.cut.frames;
-  if (of.cut.method) file.settings.compensation.method = *of.cut.method;
+steps::CaseRequest case_request(const CaseArguments& arguments, Stage until, const CommonOptions& options) {
+  CaseFile file = read_case_with_inputs(arguments.case_path);
+  if (arguments.cut.frames) file.settings.frames = *arguments.cut.frames;
+  if (arguments.cut.method) file.settings.compensation.method = *arguments.cut.method;
   if (const std::vector<Problem> problems = validate(file.settings.compensation); !problems.empty()) {
     throw CaseError("case", "compensation." + problems[0].path, problems[0].found, problems[0].expected,
                     problems[0].hint)
-        .in_file(of.case_path.string());
+        .in_file(arguments.case_path.string());
   }
-  return {std::move(file), output_of(of.case_path, options), {until, of.cut.must_resume, of.cut.checkpoint_s}};
+  return {std::move(file),
+          output_of(arguments.case_path, options),
+          {until, arguments.cut.must_resume, arguments.cut.checkpoint_s}};
 }
 
-int run_whole_loop(const CaseArguments& of, const std::filesystem::path& output, const CommonOptions& options) {
-  steps::CaseRequest request = case_request(of, Stage::Verify, options);
+int run_whole_loop(const CaseArguments& arguments, const std::filesystem::path& output, const CommonOptions& options) {
+  steps::CaseRequest request = case_request(arguments, Stage::Verify, options);
   request.output = output;
   return run_step(
-      options, [&](const auto& context) { return steps::run_loop(request, of.cut.accepted, context); }, print_study);
+      options, [&](const auto& context) { return steps::run_loop(request, arguments.cut.accepted, context); },
+      print_study);
 }
 
 }  // namespace incise::cli

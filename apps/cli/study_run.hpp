@@ -32,12 +32,13 @@ void add_compensation_method(CLI::App& verb, CutOptions& options);
 
 /// Reads the case, checks that the files it names exist, and replaces settings that the command line gives. Returns the
 /// case, its output, and the last stage to run.
-[[nodiscard]] steps::CaseRequest case_request(const CaseArguments& of, Stage until, const CommonOptions& options);
+[[nodiscard]] steps::CaseRequest case_request(const CaseArguments& arguments, Stage until,
+                                              const CommonOptions& options);
 
 /// Returns the folder for the results of a case: -o, else `out/` beside the case file.
 [[nodiscard]] std::filesystem::path output_of(const std::filesystem::path& case_path, const CommonOptions& options);
 
 /// Runs the whole loop with program and report, for `run` and `demo`. @returns the exit status.
-int run_whole_loop(const CaseArguments& of, const std::filesystem::path& output, const CommonOptions& options);
+int run_whole_loop(const CaseArguments& arguments, const std::filesystem::path& output, const CommonOptions& options);
 
 }  // namespace incise::cli

@@ -77,7 +77,7 @@ constexpr std::array<CutLine, 13> kCutLines{{{"outcome", "/outcome"},
                                              {"vertex moves limited to max_step_mm", "/held_back_vertices"},
                                              {"time of the cut, s", "/wall_s"}}};
 
-/// A simulated cut in a result: where it stands there (a JSON pointer), and its name.
+/// A simulated cut in a result: its place (a JSON pointer) and its name.
 struct ShownCut {
   std::string at;
   const char* name;

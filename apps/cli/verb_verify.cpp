@@ -55,7 +55,7 @@ void write_figure(const std::filesystem::path& folder, const VerificationCheck& 
 int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
   require_a_check(arguments.settings.only);
   if (!options.output.empty()) require_writable(options.output);
-  if (!arguments.figures.empty()) std::filesystem::create_directories(arguments.figures);
+  if (!arguments.figures.empty()) make_folder(arguments.figures);
   Console console(options.level());
   Workers workers(options.context().threads);
   const std::vector<VerificationCheck> checks = run_checks(arguments.settings, workers, console);

@@ -44,9 +44,7 @@ std::vector<std::vector<Vec2>> open_inner_edge(const Raster& kerf, const Vec2& m
     const Vec2 heading(std::cos(angle), std::sin(angle));
     std::optional<Vec2> found;
     for (double r = 0.0; r < longest && !found; r += 0.5 * kerf.pixel_mm) {
-      const Vec2 index = kerf.index_of(middle + r * heading);
-      const int i = static_cast<int>(std::lround(index.x()));
-      const int j = static_cast<int>(std::lround(index.y()));
+      const auto [i, j] = kerf.pixel_near(middle + r * heading);
       if (!kerf.contains(i, j)) break;
       if (kerf.at(i, j) != 0) found = middle + r * heading;
     }

@@ -19,8 +19,7 @@ constexpr double kWanderWaveMm = 20.0;
 constexpr std::uint64_t kWanderStream = 0x9e3779b1ULL;
 
 bool cuts(ProgramPhase phase) {
-  return phase == ProgramPhase::Plunge || phase == ProgramPhase::Cut || phase == ProgramPhase::Overlap ||
-         phase == ProgramPhase::Dwell;
+  return phase == ProgramPhase::Plunge || is_cut(phase) || phase == ProgramPhase::Dwell;
 }
 
 }  // namespace

@@ -247,7 +247,7 @@ std::vector<double> photographed_in_view(std::span<const RingObservation> observ
 struct RingForecaster::Posterior {
   std::vector<RingObservation> observations;
   bool has_simulation = false;
-  std::size_t sectors = 36;  ///< of lists: that of the observations, if there are any
+  std::size_t sectors = 36;  ///< of all lists: that of the observations; 36 without any
   RingSpreads spreads;
   bool is_converged = true;
   CovariateValues mean{};

@@ -169,9 +169,9 @@ std::vector<double> add_bonds(const TissueModel& model, const CutSettings& setti
   // The resistance of the tissue beneath it, over the duration of a hold, limits the hold.
   const double stiffer = shear_ratio(model.material, settings.tissue_s(1.0 / settings.dwell_rate_per_s()));
   for (const Bond& bond : state.bonds) {
-    const auto corners = corners_of(model.mesh, state.tissue.positions, bond.tet.index());
+    const auto corners = corners_of(state.tissue.positions, model.mesh.tets[bond.tet.index()]);
     const double share = share_within(corners, core, limit);
-    const double edge_mm = mean_edge_mm(corners_of(model.mesh, model.mesh.vertices, bond.tet.index()));
+    const double edge_mm = mean_edge_mm(corners_of(model.mesh.vertices, model.mesh.tets[bond.tet.index()]));
     const double stiffness = resolved_bond_stiffness(settings.bond_stiffness_kpa_mm2,
                                                      stiffer * model.lame[bond.tet.index()].mu_kpa, edge_mm) *
                              model.volumes_mm3[bond.tet.index()] * std::max(share, kLeastShare);
@@ -209,7 +209,7 @@ double add_hold(const TissueModel& model, const PointHold& hold, std::span<Vec3>
 void slip(const TissueModel& model, const Tool& tool, double slip_mm, CutState& state, CutStepReport& report) {
   const Mat3 held = held_directions(tool, state.tool);
   for (Bond& bond : state.bonds) {
-    const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, bond.tet.index()));
+    const Vec3 middle = centroid(corners_of(state.tissue.positions, model.mesh.tets[bond.tet.index()]));
     const Vec3 behind = held * (middle - state.tool.tip_mm - bond.offset_mm);
     const double distance = behind.norm();
     if (distance <= slip_mm) continue;
@@ -229,7 +229,7 @@ std::vector<double> load_tool(const TissueModel& model, const CutState& state, c
   std::vector<double> works_kpa;
   for (std::size_t b = 0; b < state.bonds.size(); ++b) {
     const Bond& bond = state.bonds[b];
-    const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, bond.tet.index()));
+    const Vec3 middle = centroid(corners_of(state.tissue.positions, model.mesh.tets[bond.tet.index()]));
     const Vec3 force = stiffnesses[b] * (held * (middle - state.tool.tip_mm - bond.offset_mm));
     report.tool_force_mn += force;
     report.tool_torque_mn_mm += (middle - state.tool.tip_mm).cross(force);
@@ -357,8 +357,8 @@ std::vector<Contact> find_contacts(const TissueModel& model, const Tool& tool, c
   std::vector<Contact> contacts(candidates.size());
   workers.for_each(candidates.size(), 64, [&](std::size_t c) {
     const std::size_t tet = candidates[c].index();
-    const auto from = corners_of(model.mesh, before, tet);
-    const auto to = corners_of(model.mesh, state.tissue.positions, tet);
+    const auto from = corners_of(before, model.mesh.tets[tet]);
+    const auto to = corners_of(state.tissue.positions, model.mesh.tets[tet]);
     const auto at = [&](double t) { return on_the_way(from, to, t); };
     std::array<double, kIntervalsPerStep + 1> distances{};
     for (std::size_t m = 0; m < distances.size(); ++m) {
@@ -428,7 +428,7 @@ std::vector<TetId> follow_contact(const TissueModel& model, const CutSettings& s
 void remove(const TissueModel& model, CutState& state, TetId tet, RemovalCause cause) {
   state.tissue.is_live[tet.index()] = 0;
   state.record.removals.push_back({tet, state.step, state.time_s, cause,
-                                   centroid(corners_of(model.mesh, state.tissue.positions, tet.index())),
+                                   centroid(corners_of(state.tissue.positions, model.mesh.tets[tet.index()])),
                                    rest_volume_mm3(model, state.splits, tet)});
 }
 
@@ -463,8 +463,8 @@ std::vector<TetId> tets_near(const TissueModel& model, NearTets& finder, std::sp
   const std::vector<TetId> candidates = finder.candidates(model, is_wanted, before, after, cores, distance_mm, workers);
   std::vector<std::uint8_t> is_near(candidates.size(), 0);
   workers.for_each(candidates.size(), 64, [&](std::size_t c) {
-    const auto from = corners_of(model.mesh, before, candidates[c].index());
-    const auto to = corners_of(model.mesh, after, candidates[c].index());
+    const auto from = corners_of(before, model.mesh.tets[candidates[c].index()]);
+    const auto to = corners_of(after, model.mesh.tets[candidates[c].index()]);
     for (std::size_t m = 0; m < cores.size() && is_near[c] == 0; ++m) {
       const double t = cores.size() > 1 ? static_cast<double>(m) / static_cast<double>(cores.size() - 1) : 0.0;
       if (distance_to_core(on_the_way(from, to, t), cores[m]) <= distance_mm) is_near[c] = 1;
@@ -576,7 +576,7 @@ void touch_surface(const TissueModel& model, const CutSettings& settings, const 
   for (const TetId tet : touched) {
     const auto held = std::ranges::lower_bound(state.bonds, tet, {}, &Bond::tet);
     const bool was_held = held != state.bonds.end() && held->tet == tet;
-    const Vec3 middle = centroid(corners_of(model.mesh, state.tissue.positions, tet.index()));
+    const Vec3 middle = centroid(corners_of(state.tissue.positions, model.mesh.tets[tet.index()]));
     bonds.push_back(was_held ? *held : Bond{tet, middle - state.tool.tip_mm});
   }
   state.bonds = std::move(bonds);

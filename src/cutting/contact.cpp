@@ -238,11 +238,6 @@ ContactInterval contact_interval(std::span<const double> distances_mm, const std
   return interval;
 }
 
-std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::span<const Vec3> positions, std::size_t tet) {
-  const Tet& t = mesh.tets[tet];
-  return {positions[t[0].index()], positions[t[1].index()], positions[t[2].index()], positions[t[3].index()]};
-}
-
 std::vector<TetId> NearTets::candidates(const TissueModel& model, std::span<const std::uint8_t> is_wanted,
                                         std::span<const Vec3> before, std::span<const Vec3> after,
                                         std::span<const ToolCore> cores, double limit_mm, Workers& workers) {

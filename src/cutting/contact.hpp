@@ -13,9 +13,6 @@
 
 namespace incise {
 
-/// Returns the corner positions of a tet.
-[[nodiscard]] std::array<Vec3, 4> corners_of(const TetMesh& mesh, std::span<const Vec3> positions, std::size_t tet);
-
 /// Returns the exact distance between a solid tet (of either orientation) and the segment from a to b, mm; 0 where they
 /// meet. The segment may be one point.
 [[nodiscard]] double distance_to_segment(const std::array<Vec3, 4>& tet, const Vec3& a, const Vec3& b);

@@ -1,4 +1,3 @@
-#include "contact.hpp"
 #include "kerf.hpp"
 
 #include <incise/core/error.hpp>
@@ -251,7 +250,7 @@ std::size_t count_inverted(const TetMesh& mesh, const TissueState& tissue) {
   std::size_t count = 0;
   for (std::size_t tet = 0; tet < mesh.tets.size(); ++tet) {
     if (tissue.is_live[tet] == 0) continue;
-    const auto [a, b, c, d] = corners_of(mesh, tissue.positions, tet);
+    const auto [a, b, c, d] = corners_of(tissue.positions, mesh.tets[tet]);
     if (signed_volume(a, b, c, d) <= 0.0) ++count;
   }
   return count;

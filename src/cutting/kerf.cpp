@@ -1,6 +1,5 @@
 #include "kerf.hpp"
 
-#include "contact.hpp"
 #include "parted_tissue.hpp"
 #include "point_kerf.hpp"
 
@@ -39,7 +38,7 @@ KerfInput kerf_input(const TissueModel& model, const TissueState& stretched, con
     kerf.removed_tets = by_points->tets();
   } else {
     for (const Removal& removal : record.removals)
-      kerf.removed_tets.push_back(corners_of(model.mesh, stretched.positions, removal.tet.index()));
+      kerf.removed_tets.push_back(corners_of(stretched.positions, model.mesh.tets[removal.tet.index()]));
   }
   kerf.surface = skin_of(model.mesh, stretched.positions);
   kerf.approach = settings.approach;

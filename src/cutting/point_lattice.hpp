@@ -72,7 +72,8 @@ class PointLattice {
   [[nodiscard]] static Node node_near(const Vec3& rest);
   /// Returns the node with the lowest coordinates of the cell that contains a place at rest, mm.
   [[nodiscard]] static Node cell_of(const Vec3& rest);
-  /// Returns a corner of the cell above a node: bit a of `corner` means `by` steps along axis a.
+  /// Returns the node `by` steps away along each axis whose bit is set in `corner` (bit a: axis a); with 1, a corner of
+  /// the cell whose lowest node is `node`.
   [[nodiscard]] static Node corner_of(Node node, std::size_t corner, int by = 1);
   /// Returns the trilinear weight of a corner of a cell at a place in it. @param t  from the lowest corner, in
   /// spacings.

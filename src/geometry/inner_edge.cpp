@@ -82,11 +82,9 @@ std::optional<Raster> plug_of(const DepthBuffer& picture, const CutSurface& surf
   const Raster skin = visible_skin(picture, surface);
   // Closing first mends slits in the skin; opening then cuts strips that would join the plug to the outside.
   const Raster mended = opened(closed(skin, settings.closing_mm), settings.opening_mm);
-  const Vec2 at = picture.index_of(inside);
-  if (!(at.x() > -0.5 && at.y() > -0.5 && at.x() < picture.width - 0.5 && at.y() < picture.height - 0.5))
-    return std::nullopt;
-  const Components parts = find_components(mended, 1, Connectivity::Four);
   const auto [i, j] = picture.pixel_near(inside);
+  if (!picture.contains(i, j)) return std::nullopt;
+  const Components parts = find_components(mended, 1, Connectivity::Four);
   const std::int32_t part = parts.labels[picture.offset(i, j)];
   if (part < 0 || parts.parts[static_cast<std::size_t>(part)].touches_border) return std::nullopt;
   const Raster plug = holes_filled(part_of(mended, parts, part),

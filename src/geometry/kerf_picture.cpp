@@ -38,15 +38,6 @@ Raster mask_of(const ScalarRaster& coverage, const KerfMidlineSettings& settings
   return holes_filled(closed(mask, settings.closing_mm), settings.max_island_mm2);
 }
 
-std::array<int, 2> pixel_of(const RasterGrid& grid, const Vec2& p) {
-  const Vec2 at = grid.index_of(p);
-  // A point far outside the picture counts as just outside it.
-  const auto rounded = [](double x, int count) {
-    return static_cast<int>(std::lround(std::clamp(x, -1.0, static_cast<double>(count))));
-  };
-  return {rounded(at.x(), grid.width), rounded(at.y(), grid.height)};
-}
-
 void require_valid(const KerfMidlineSettings& s) {
   INCISE_REQUIRE(
       std::isfinite(s.layer_top_mm) && std::isfinite(s.layer_bottom_mm) && s.layer_top_mm < s.layer_bottom_mm,
@@ -110,7 +101,7 @@ Vec2 normal_at(const Contour& curve, std::size_t i) {
 }
 
 std::optional<Raster> enclosed_tissue(const Raster& mask, const Vec2& inside) {
-  const auto [i, j] = pixel_of(mask, inside);
+  const auto [i, j] = mask.pixel_near(inside);
   if (!mask.contains(i, j) || mask.at(i, j) != 0) return std::nullopt;
   const Components tissue = find_components(mask, 0, Connectivity::Four);
   const std::int32_t part = tissue.labels[mask.offset(i, j)];
@@ -144,7 +135,7 @@ double widest_gap_deg(const Raster& mask, const Vec2& inside) {
 }
 
 WidestGap widest_gap(const Raster& mask, const Vec2& inside) {
-  const auto pixel = pixel_of(mask, inside);
+  const auto pixel = mask.pixel_near(inside);
   if (!mask.contains(pixel[0], pixel[1])) return {std::numeric_limits<double>::infinity(), {}};
   if (mask.at(pixel[0], pixel[1]) != 0) return {0.0, {}};
   const ScalarRaster distance = distance_to(mask, 1);

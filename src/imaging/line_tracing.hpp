@@ -26,6 +26,7 @@ void smooth(Line& line, bool is_closed, int passes);
 /// Returns the mask without connected pieces of fewer than `least_pixels` pixels.
 [[nodiscard]] cv::Mat without_specks(const cv::Mat& above, int least_pixels);
 /// Returns the value of each pixel's piece, 8 bits. @param pieces  number of each pixel's piece, 32 bits.
+/// @param values  by the number of the piece.
 [[nodiscard]] cv::Mat by_piece(const cv::Mat& pieces, const std::vector<std::uint8_t>& values);
 
 /// The part of the picture that a mask fills, and its position.

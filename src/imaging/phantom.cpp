@@ -253,7 +253,6 @@ void draw_tumor(const PhantomSettings& settings, Random& random, Phantom& phanto
     phantom.tumor_edge.points.push_back(p);
     rim.push_back(add_vertex(phantom.tumor, p));
   }
-  phantom.tumor_edge.is_closed = true;
   add_cap(phantom.tumor, phantom.shape, center, rim, 0.0, true);
   add_cap(phantom.tumor, phantom.shape, center, rim, settings.tumor_depth_mm, false);
   phantom.tumor_center_mm = center;

@@ -235,11 +235,12 @@ std::string read_text(const fs::path& path) {
   return text;
 }
 
-void make_folder(const fs::path& folder, const char* expected) {
+void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder, error))
-    throw DataError(folder, "", error ? system_reason(error) : "something that is not a folder", expected);
+    throw DataError(folder, "", error ? system_reason(error) : "something that is not a folder",
+                    "a folder that can be written");
 }
 
 void require_replaceable(const fs::path& name) {

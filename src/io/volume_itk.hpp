@@ -22,7 +22,7 @@ struct RawImage {
 inline void describe(Visitor& v, RawImage& image) {
   v("grid", image.grid, "Grid of the voxels.");
   auto component = static_cast<int>(image.component);
-  v("component", component, "Type of the values.");
+  v("component", component, "Type of the values.", {0.0, static_cast<double>(Component::F64)});
   image.component = static_cast<Component>(component);
   v("notices", image.notices, "Remarks on the file.");
   v("bytes", image.bytes, "The values.");  // last: a text that is appended to such a large one would double its memory

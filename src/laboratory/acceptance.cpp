@@ -3,6 +3,7 @@
 
 #include <incise/core/batch_monitor.hpp>
 #include <incise/core/described_json.hpp>
+#include <incise/core/expect.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/folder_lock.hpp>
 #include <incise/io/json_file.hpp>
@@ -96,12 +97,12 @@ std::string csv_of(const Rows& rows) {
 }  // namespace
 
 void describe(Visitor& v, AcceptanceSettings& s) {
-  v("specimens", s.specimens, "Number of specimens; their seeds count up from --seed.", {1.0, 200.0});
+  v("specimens", s.specimens, "Number of specimens; their seeds count up from the run's.", {1.0, 200.0});
   std::vector<second_bench::Factor> factors(s.factors.begin(), s.factors.end());
   v("factors", factors, "Factors of laboratory 2 that vary.");
   if (v.sets()) s.factors = {factors.begin(), factors.end()};
-  v("speed_mm_s", s.speed_mm_s, "Speed of every cut; by default as prescribed.", {1.0, 15.0});
-  v("power_w", s.power_w, "Power of every cut; by default as prescribed.", {1.0, 120.0});
+  v({"speed_mm_s", "Speed of every cut; by default as prescribed.", "mm/s"}, s.speed_mm_s, {1.0, 15.0});
+  v({"power_w", "Power of every cut; by default as prescribed.", "W"}, s.power_w, {1.0, 120.0});
   v("overrides", s.overrides, "Failed checks of the program to override.");
   v("paper_pass", s.with_paper_pass, "Whether each specimen is also cut along the paper's correction.");
   v("tets", s.tets, "Target number of tets of the planner's meshes.", kPositive);
@@ -109,7 +110,8 @@ void describe(Visitor& v, AcceptanceSettings& s) {
 
 nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const std::filesystem::path& output,
                                     const RunContext& run, Workers& workers, Monitor& monitor) {
-  const steps::StepContext context{run, workers, monitor};
+  require_none(problems_of(settings));
+  const steps::StepContext timed{run, workers, monitor};  // for its wall_s()
   const FolderLock lock(output);
   laboratory::claim_folder(output, "incise.acceptance/1", "an acceptance", run.seed,
                            {kAcceptanceFile, kAcceptanceTable, "manifest.json"});
@@ -132,7 +134,7 @@ nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings, const st
   result["summary"] = summary_of_rows(rows);
   result["rows"] = rows;
   write_atomically(output / kAcceptanceTable, csv_of(rows));
-  const double wall_s = context.wall_s();
+  const double wall_s = timed.wall_s();
   write_manifest(output, steps::manifest_of(run, to_json(settings).dump(), {}, wall_s));
   result["wall_s"] = wall_s;
   write_json(output / kAcceptanceFile, result);

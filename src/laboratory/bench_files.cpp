@@ -123,8 +123,8 @@ void read_parameters(const Json& document, const char* schema, std::vector<std::
 
 /// Writes what the truths of both laboratories have in common.
 template <class Body>
-void write_body(const std::filesystem::path& folder, const Body& body, const Contour& edge_rest,
-                const Contour& edge_stretched) {
+void write_common_truth(const std::filesystem::path& folder, const Body& body, const Contour& edge_rest,
+                        const Contour& edge_stretched) {
   write_json(folder / "specimen.json", specimen_json(body.specimen));
   write_contour_csv(folder / "tumor_edge_rest.csv", edge_rest);
   write_contour_csv(folder / "tumor_edge_stretched.csv", edge_stretched);
@@ -231,7 +231,7 @@ void write_readings(const std::filesystem::path& folder, const Readings& reading
 }
 
 void write_truth(const std::filesystem::path& folder, const BenchBody& body) {
-  write_body(folder, body, body.tumor_edge_rest, tumor_edge_at(body, body.stretched.positions));
+  write_common_truth(folder, body, body.tumor_edge_rest, tumor_edge_at(body, body.stretched.positions));
   TetMesh stretched;
   stretched.vertices = body.stretched.positions;
   stretched.tets = body.tissue->mesh.tets;
@@ -240,7 +240,8 @@ void write_truth(const std::filesystem::path& folder, const BenchBody& body) {
 }
 
 void write_truth(const std::filesystem::path& folder, const second_bench::Body& body) {
-  write_body(folder, body, second_bench::tumor_edge_rest_of(*body.state), second_bench::tumor_edge_of(*body.state));
+  write_common_truth(folder, body, second_bench::tumor_edge_rest_of(*body.state),
+                     second_bench::tumor_edge_of(*body.state));
 }
 
 }  // namespace incise

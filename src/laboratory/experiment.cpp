@@ -189,7 +189,7 @@ class Experiment {
 };
 
 ExperimentJson Experiment::run() {
-  const steps::StepContext whole{context_, workers_, monitor_};
+  const steps::StepContext timed{context_, workers_, monitor_};  // for its wall_s()
   claim_folder();
   remove_summaries();
   run_trials(TrialRole::Calibrate, TrialRole::Calibrate);
@@ -202,7 +202,7 @@ ExperimentJson Experiment::run() {
     AtomicFolder folder(root_ / "advice");
     write_json(folder.path() / "advice.json", advice);
     draw_advice(folder.path(), advice);
-    write_manifest(folder.path(), steps::manifest_of(context_, to_json(settings_).dump(), {}, whole.wall_s()));
+    write_manifest(folder.path(), steps::manifest_of(context_, to_json(settings_).dump(), {}, timed.wall_s()));
     folder.commit();
   }
   write_commands();
@@ -254,7 +254,7 @@ ExperimentJson Experiment::run() {
                      {"machine", machine_description(), ""}};
   write_report(page, root_ / "report.html");
   result["report"] = (root_ / "report.html").string();
-  result["wall_s"] = whole.wall_s();
+  result["wall_s"] = timed.wall_s();
   write_manifest(root_, steps::manifest_of(context_, to_json(settings_).dump(), {}, result["wall_s"].get<double>()));
   write_json(root_ / "study.json", result);
   return result;
@@ -676,11 +676,11 @@ namespace incise {
 void describe(Visitor& v, ExperimentSettings& s) {
   v("bench", s.bench,
     "1: the first laboratory, whose specimens are much alike; 2: the second, whose specimens, margins, depths and "
-    "speeds differ widely (`incise schema bench2`). Specimens of laboratory 2 are one series, that of --seed.",
+    "speeds differ widely (`incise schema bench2`). Specimens of laboratory 2 are one series, that of the run's seed.",
     {1.0, 2.0});
   v("specimens", s.specimens,
     "Number of specimens, even: half to calibrate on, half to test; 4: as in the paper, and one outside the calibrated "
-    "range. Their seeds count up from --seed, so start another experiment beyond the last seed of this one.",
+    "range. Their seeds count up from the run's, so start another experiment beyond the last seed of this one.",
     {2.0, 200.0});
   v("outside", s.outside,
     "Further specimens unlike those calibrated on (stiff, oedematous, scarred, oedematous, soft in turn), to compare "
@@ -689,7 +689,7 @@ void describe(Visitor& v, ExperimentSettings& s) {
     {0.0, 200.0});
   v("quick", s.is_quick, "Skip the grid of 25 pairs of speed and dullness (Table I).");
   v("rivals", s.with_rivals, "Whether test specimens are also cut along every rival's path.");
-  v("paper_pass", s.with_paper_pass, "With --no-rivals: still cut along the paper's single radial correction.");
+  v("paper_pass", s.with_paper_pass, "Without the rivals: still cut along the paper's single radial correction.");
   v("known_physics", s.with_known_physics,
     "Also cut every test specimen as a planner that knows the bench's physics would (first laboratory).");
   v("withheld_force", s.with_withheld_force, "Also run `assess` as if the pull had not been measured.");

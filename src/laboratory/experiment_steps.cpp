@@ -144,7 +144,7 @@ ExperimentSteps::ExperimentSteps(std::filesystem::path folder, Workers& workers,
       workers_(workers),
       outer_(monitor),
       cache_(std::make_unique<EntryFolder>(folder_ / "cache")) {
-  make_folder(folder_, "a folder that can be made");
+  make_folder(folder_);
 }
 
 StepAnswer ExperimentSteps::run(const ExperimentStep& step) {

@@ -84,7 +84,7 @@ struct Trial {
   std::vector<std::string> commands;
 };
 
-/// Returns a part of a JSON value; null if there is none, or no such value.
+/// Returns the value at a JSON pointer ("/a/b"); null if there is none.
 [[nodiscard]] nlohmann::ordered_json json_part(const nlohmann::ordered_json& json, const char* pointer);
 
 /// Returns every step that refused this specimen or a cut of it.

@@ -134,7 +134,7 @@ std::string factors_svg(const FactorTable& table) {
 nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const std::filesystem::path& output,
                                       const RunContext& run, Workers& workers, Monitor& monitor) {
   INCISE_REQUIRE(settings.factors.size() >= 2, "expected at least two factors: with one, chance cannot be estimated");
-  const steps::StepContext context{run, workers, monitor};
+  const steps::StepContext timed{run, workers, monitor};  // for its wall_s()
   const FractionalFactorial design(settings.factors.size());
   const FolderLock lock(output);
   laboratory::claim_folder(output, "incise.factors/1", "a screening of factors", run.seed,
@@ -188,7 +188,7 @@ nlohmann::ordered_json screen_factors(const ScreeningSettings& settings, const s
   write_atomically(output / "factors.csv", csv_text(factors_csv(table)));
   write_atomically(output / "cuts.csv", csv_text(csv));
   if (table.chance) write_atomically(output / "factors.svg", factors_svg(table));
-  const double wall_s = context.wall_s();
+  const double wall_s = timed.wall_s();
   write_manifest(output, steps::manifest_of(run, screening_json(settings, design).dump(), {}, wall_s));
   result["figure"] = table.chance ? ScreeningJson((output / "factors.svg").string()) : ScreeningJson(nullptr);
   result["wall_s"] = wall_s;

@@ -138,7 +138,7 @@ std::optional<SpeedEstimate> speed_of(const PowerStepRequest& request) {
 }
 
 void make_output(const std::filesystem::path& folder) {
-  make_folder(folder, "a folder that can be made");
+  make_folder(folder);
   steps::require_own_or_empty(folder, {"power.json", "cache"}, "a series");
   require_writable(folder / "power.json");
 }

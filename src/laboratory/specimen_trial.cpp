@@ -1,3 +1,4 @@
+#include "laboratory/experiment_tables.hpp"
 #include "laboratory/specimen_trial.hpp"
 
 #include <incise/core/defaults.hpp>
@@ -351,7 +352,7 @@ TrialCut SpecimenTrial::cut_robustly(const std::filesystem::path& file, const st
                         steps::RobustRequest{.calibration = steps::read_calibration_input(known)}, context);
                   }});
   // The default correction of the same run may be refused, and this path may still be sound.
-  const StudyJson robust = found.result.is_object() ? found.result.value("robust", StudyJson()) : StudyJson();
+  const StudyJson robust = json_part(found.result, "/robust");
   if (robust.is_object() && robust.at("outcome") == to_string(RobustOutcome::Met)) return cut(path, tag);
   const std::string step = tag + "_compensate";
   return {.ended_at = found.end == StepEnd::Done ? step + ": not found" : refusal_of(step, found)};

@@ -1,5 +1,6 @@
 #include "laboratory/virtual_laboratory.hpp"
 
+#include <incise/io/atomic_file.hpp>
 #include <incise/io/json_file.hpp>
 #include <incise/laboratory/bench_files.hpp>
 #include <incise/laboratory/bench_steps.hpp>
@@ -19,7 +20,7 @@ StepAnswer VirtualLaboratory::take_readings(const std::filesystem::path& folder)
   std::vector<std::string> arguments{"bench", "make"};
   std::vector<std::filesystem::path> inputs;
   MakeSpecimenRequest request{.output = folder, .truth = hidden_.truth};
-  std::filesystem::create_directories(hidden_.truth.parent_path());
+  make_folder(hidden_.truth.parent_path());
   const bool is_first = hidden_.bench == 1;
   if (!hidden_.given.empty()) {
     nlohmann::ordered_json specimen;

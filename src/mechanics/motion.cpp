@@ -84,7 +84,7 @@ class Step {
       }
       find_forces(is_first ? Tangent::FrozenRotations : Tangent::Exact, is_first);
       const double size = free_norm(scratch_.right, free_);
-      if (is_first) scale = std::max(size, least_force_mn(model_));
+      if (is_first) scale = std::max(size, negligible_force_mn(model_));
       if (!std::isfinite(size)) break;
       report.relative_residual = size / scale;
       if (is_first ? size == 0.0 && !is_carried_ : report.relative_residual <= settings_.relative_tolerance) {

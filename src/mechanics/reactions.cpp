@@ -26,7 +26,7 @@ double free_norm(std::span<const Vec3> vectors, std::span<const Vec3> is_free) {
   return std::sqrt(squared);
 }
 
-double least_force_mn(const TissueModel& model) {
+double negligible_force_mn(const TissueModel& model) {
   const double size = bounding_box(model.mesh.vertices).diagonal().norm();
   return 1e-6 * model.material.youngs_modulus_kpa * size * size;
 }

@@ -11,7 +11,7 @@ namespace incise {
 [[nodiscard]] double free_norm(std::span<const Vec3> vectors, std::span<const Vec3> is_free);
 
 /// Returns a force far below any that deforms the body, but above rounding, mN: 1e-6 E L², L the diagonal of its box.
-[[nodiscard]] double least_force_mn(const TissueModel& model);
+[[nodiscard]] double negligible_force_mn(const TissueModel& model);
 
 /// Returns the force of each constraint on the tissue, mN: the force that balances its held axes, the push of a
 /// support, or the sum of a traction. An axis that two constraints hold counts for the first.

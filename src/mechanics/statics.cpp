@@ -145,7 +145,7 @@ class Equilibrium {
         if (model_.is_fixed[v][static_cast<std::size_t>(i)]) reactions += forces_[v][i] * forces_[v][i];
       }
     }
-    return std::max({std::sqrt(reactions), free_norm(load_, free_), least_force_mn(model_)});
+    return std::max({std::sqrt(reactions), free_norm(load_, free_), negligible_force_mn(model_)});
   }
 
   [[nodiscard]] double potential() const {

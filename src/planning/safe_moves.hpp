@@ -6,7 +6,7 @@
 
 namespace incise {
 
-/// Falling short of a move by no more than this is rounding.
+/// A move that falls short by no more than this counts as complete.
 inline constexpr double kMoveToleranceMm = 1e-6;
 
 /// Moves a waypoint over the surface by `wanted_mm` in space, along unit direction `outward` of the picture (inwards if

@@ -277,7 +277,7 @@ CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec
   }
   const double length = target_measure.radius;
   const SearchFrame frame{source_measure.center, target_measure.center, length};
-  drift.T_target_source = frame.inwards(start);
+  drift.T_target_source = frame.to_search(start);
   if (!settings.first_sigma) {
     // As published: centroids coincide, and sizes are equal as far as the range allows.
     drift.T_target_source.scale = std::clamp(length / source_measure.radius, settings.scale.low, settings.scale.high);
@@ -286,7 +286,7 @@ CoherentPointDrift rigid_drift(std::span<const Vec3> source, std::span<const Vec
   Expectation(normalised(source, source_measure.center, length), normalised(target, target_measure.center, length),
               settings, workers)
       .run(drift, monitor);
-  drift.T_target_source = frame.outwards(drift.T_target_source);
+  drift.T_target_source = frame.from_search(drift.T_target_source);
   drift.sigma_mm *= length;
   drift.last_step_mm *= length;
   return drift;

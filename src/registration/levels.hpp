@@ -33,14 +33,14 @@ struct Measure {
 /// Maps transforms to and from the frame of a search: each cloud centred, in units of the target's radius. Scales do
 /// not change.
 struct SearchFrame {
-  Vec3 source_center;
-  Vec3 target_center;
-  double length = 1.0;
+  Vec3 source_center;   ///< mean of the source, mm
+  Vec3 target_center;   ///< mean of the target, mm
+  double length = 1.0;  ///< radius of the target, mm
 
-  [[nodiscard]] Similarity inwards(const Similarity& t) const {
+  [[nodiscard]] Similarity to_search(const Similarity& t) const {
     return {t.scale, t.rotation, (t(source_center) - target_center) / length};
   }
-  [[nodiscard]] Similarity outwards(const Similarity& t) const {
+  [[nodiscard]] Similarity from_search(const Similarity& t) const {
     return {t.scale, t.rotation, length * t.translation_mm + target_center - t.scale * (t.rotation * source_center)};
   }
 };

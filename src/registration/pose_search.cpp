@@ -184,12 +184,16 @@ PoseSearch search_poses(const SampledSurface& source, const SampledSurface& targ
   }
   // Scores of rough poses rank them only roughly. Improving many of them with few points shows which deserve more work.
   poses = distinct(std::move(poses), source.cloud.points, settings.followed);
-  IcpSettings finish{settings.scale, 2.0 * kLastSigma, 5e-4, kFollowSteps, kFollowPoints};
-  refine(poses, source, target, finish, 2.0 * settings.score_width, workers);
+  IcpSettings improving{.scale = settings.scale,
+                        .first_width = 2.0 * kLastSigma,
+                        .tolerance = 5e-4,
+                        .max_iterations = kFollowSteps,
+                        .max_points = kFollowPoints};
+  refine(poses, source, target, improving, 2.0 * settings.score_width, workers);
   poses = distinct(std::move(poses), source.cloud.points, settings.refined);
-  finish.max_iterations = 40;
-  finish.max_points = kFinePoints;
-  refine(poses, source, target, finish, settings.score_width, workers);
+  improving.max_iterations = 40;
+  improving.max_points = kFinePoints;
+  refine(poses, source, target, improving, settings.score_width, workers);
   monitor.progress("searching poses", 1.0);
   search.poses = distinct(std::move(poses), source.cloud.points, settings.keep);
   return search;

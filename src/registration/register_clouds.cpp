@@ -90,7 +90,7 @@ class Registering {
   void run(Registration& result) {
     std::vector<Pose> poses;
     if (settings_.start) {
-      poses.push_back({frame_.inwards(*settings_.start), 0.0});
+      poses.push_back({frame_.to_search(*settings_.start), 0.0});
       result.starts = 1;
     } else {
       PoseSearch found = search_poses(source_, target_, search_settings(), workers_, monitor_);
@@ -179,7 +179,7 @@ class Registering {
     Candidate best = candidates.front();
     compare_with_mirror_image(result, best);
     const std::optional<SettledPose> settled = settled_from(best);
-    result.T_target_source = frame_.outwards(best.transform);
+    result.T_target_source = frame_.from_search(best.transform);
     result.iterations = best.iterations;
     result.score = best.score;
     result.drift_sigma_mm = best.sigma * frame_.length;
@@ -249,7 +249,7 @@ class Registering {
     const auto consider = [&](const Similarity& t, double score) {
       if (score <= result.rival_score || !differ(t, best.transform, source_.cloud.points, kDifferent)) return;
       result.rival_score = score;
-      result.rival = frame_.outwards(t);
+      result.rival = frame_.from_search(t);
     };
     for (const Candidate& candidate : candidates) consider(candidate.transform, candidate.score);
     // The search stops when its poses are good enough to be ranked: after convergence some of them coincide with the

@@ -2,7 +2,6 @@
 
 #include <incise/report/report_data.hpp>
 
-#include <array>
 #include <string_view>
 
 namespace incise {
@@ -14,11 +13,17 @@ struct LineLook {
 };
 
 [[nodiscard]] constexpr LineLook look_of(LineKind kind) {
-  constexpr std::array<LineLook, 4> kLooks{{{"tumour edge", "#00b386"},
-                                            {"intended path", "#111111"},
-                                            {"corrected path", "#1f8fe0"},
-                                            {"kerf mid-line", "#ffb000"}}};
-  return kLooks[static_cast<std::size_t>(kind)];
+  switch (kind) {
+    case LineKind::TumorEdge:
+      return {"tumour edge", "#00b386"};
+    case LineKind::IntendedPath:
+      return {"intended path", "#111111"};
+    case LineKind::CorrectedPath:
+      return {"corrected path", "#1f8fe0"};
+    case LineKind::KerfMidLine:
+      return {"kerf mid-line", "#ffb000"};
+  }
+  return {"line", "#111111"};
 }
 
 }  // namespace incise

@@ -56,7 +56,7 @@ inline constexpr std::string_view kTooClose = "#cc79a7";
 inline constexpr std::string_view kTooCloseText = "#8f3f70";  // a darker shade, for text
 inline constexpr std::string_view kReached = "#b3123f";
 inline constexpr std::array<std::string_view, 4> kSeries{"#6b6b6b", "#0072b2", "#d55e00", "#009e73"};
-/// The colour of series k; after the last the first comes again.
+/// Returns the colour of series k; the colours repeat.
 [[nodiscard]] constexpr std::string_view of_series(std::size_t k) {
   return kSeries[k % kSeries.size()];
 }

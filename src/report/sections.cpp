@@ -28,7 +28,7 @@ std::string missing(std::string_view what) {
 }
 
 std::string figure(const std::string& content) {
-  return "<figure >" + content + "</figure>\n";
+  return "<figure>" + content + "</figure>\n";
 }
 
 std::string card(std::string_view label, std::string_view value, std::string_view unit) {

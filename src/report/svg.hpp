@@ -25,7 +25,8 @@ namespace incise {
 /// as text, such as `stroke="#111" fill="none"`.
 class SvgWriter {
  public:
-  /// @param title, description  for screen readers; escaped here.  @param has_ground  whether the picture is white.
+  /// @param title, description  for screen readers; escaped here.  @param has_ground  whether it has a white
+  /// background; if not, it is transparent.
   SvgWriter(double width, double height, std::string_view title, std::string_view description, bool has_ground = true);
 
   void line(const Vec2& a, const Vec2& b, std::string_view style);

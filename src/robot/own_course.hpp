@@ -4,7 +4,7 @@
 
 namespace incise::robot_detail {
 
-/// Ends a replay early or as a fault. @param line  of the program; 0: none
+/// Sets a replay's outcome and reason. @param line  of the program, from 1; 0: no line is to blame
 void end_replay(Replay& replay, ReplayOutcome outcome, std::string reason = {}, std::size_t line = 0);
 
 /// Compares a completed replay with the course of the path and settings in its program's header, in all phases:

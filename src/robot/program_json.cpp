@@ -14,6 +14,7 @@
 
 namespace incise {
 
+/// Not in the unnamed namespace, where argument-dependent lookup would not find it.
 static void describe(Visitor& v, ProgramPose& p) {
   v("phase", p.phase, "Phase of the program.");
   v({"time_s", "Time from the start of the program.", "s"}, p.time_s);

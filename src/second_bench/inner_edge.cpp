@@ -51,17 +51,15 @@ std::optional<Contour> inner_edge_of(const SeenTissue& seen) {
   const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), kPixelMm, kAroundMm);
   const Raster skin = opened(whole_skin(seen, grid), 0.5 * kBridgeMm);
   const Components parts = find_components(skin, 1, Connectivity::Four);
-  const Vec2 centre = grid.index_of(middle.head<2>());
-  const std::int32_t plug =
-      parts.labels[grid.offset(static_cast<int>(std::lround(centre.x())), static_cast<int>(std::lround(centre.y())))];
+  const auto [ci, cj] = grid.pixel_near(middle.head<2>());
+  const std::int32_t plug = parts.labels[grid.offset(ci, cj)];
   if (plug < 0 || parts.parts[static_cast<std::size_t>(plug)].touches_border) return std::nullopt;
   std::vector<double> radius;
   for (int n = 0; n < kRays; ++n) {
     const double angle = 2.0 * units::kPi * n / kRays;
     double r = 0.0;
     for (;; r += 0.25 * kPixelMm) {
-      const Vec2 at = grid.index_of(middle.head<2>() + r * Vec2(std::cos(angle), std::sin(angle)));
-      const int i = static_cast<int>(std::lround(at.x())), j = static_cast<int>(std::lround(at.y()));
+      const auto [i, j] = grid.pixel_near(middle.head<2>() + r * Vec2(std::cos(angle), std::sin(angle)));
       if (!grid.contains(i, j) || parts.labels[grid.offset(i, j)] != plug) break;
     }
     radius.push_back(r);

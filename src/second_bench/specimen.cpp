@@ -18,7 +18,7 @@ constexpr auto kNormal = DrawnAs::Normal;
 constexpr auto kLogNormal = DrawnAs::LogNormal;
 constexpr std::optional<Factor> kAlways = std::nullopt;
 
-/// @param values  of HiddenParameter, in its order.
+/// Returns a parameter that varies with a factor, or always. @param values  the fields of HiddenParameter, in order.
 template <class... Values>
 constexpr Parameter varies(std::optional<Factor> with, const Values&... values) {
   return {{values...}, with};

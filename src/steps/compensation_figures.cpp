@@ -133,7 +133,7 @@ std::vector<std::filesystem::path> write_compensation_figures(const std::filesys
                                                               const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> written;
   for (const CompensationFigure& figure : compensation_figures(root)) {
-    std::filesystem::create_directories(folder);
+    make_folder(folder);
     const std::string svg = line_plot_svg(figure.plot);
     written.push_back(folder / figure.file);
     write_atomically(written.back(), svg);

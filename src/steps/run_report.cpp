@@ -638,7 +638,7 @@ void write_report_and_figures(const ReportData& data, const fs::path& page) {
   const fs::path folder = page.parent_path() / "figures";
   const std::vector<ReportIncision> drawn = drawn_incisions(data);
   if (drawn.empty()) return;
-  std::filesystem::create_directories(folder);
+  make_folder(folder);
   const auto write = [&folder](const char* name, const std::string& text) { write_atomically(folder / name, text); };
   const FigureStyle style = common_style(drawn, data.approach, data.axis_names);
   write("contours.svg", contour_figure_svg(drawn.front(), style));

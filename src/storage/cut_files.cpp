@@ -167,7 +167,7 @@ void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog
 /// Writes the frames as a ParaView time series, and the tool's poses at their times as JSON.
 void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, const std::vector<CutFrame>& frames) {
   if (frames.empty()) return;
-  std::filesystem::create_directories(folder / "frames");
+  make_folder(folder / "frames");
   if (tissue.is_divided()) write_vtu(folder / kUncutFile, uncut_mesh(tissue));
   std::vector<PvdFrame> series;
   nlohmann::ordered_json tools = nlohmann::ordered_json::array();

@@ -389,12 +389,6 @@ ArmFrames frames_of(const Replay& replay, const ArmModel& arm, const Instrument&
   return frames;
 }
 
-Json matrix_json(const Mat4& T) {
-  Json rows = Json::array();
-  for (int r = 0; r < 4; ++r) rows.push_back({T(r, 0), T(r, 1), T(r, 2), T(r, 3)});
-  return rows;
-}
-
 Json picture_json(BlobFolder& blobs, const std::string& slot, const fs::path& file) {
   const ColorPicture picture = decode_picture(read_text(file), file);
   return {{"width", picture.width},
@@ -714,7 +708,7 @@ Json Calls::arm(const Json& arguments) {
   const Hulls of_arm = hulls_at(setup.arm, setup.near_rad, instrument, setup.table_z_mm);
   for (std::size_t h = 0; h < kHullCount; ++h)
     hulls.push_back({{"name", kHullNames[h]}, {"radius_mm", of_arm[h].radius_mm}});
-  Json json{{"T_robot_sim", matrix_json(*T_robot_sim)}, {"hulls", std::move(hulls)}};
+  Json json{{"T_robot_sim", to_json(*T_robot_sim)}, {"hulls", std::move(hulls)}};
   json["time_s"] = blobs_.put("arm.time", std::span<const float>(frames.time_s));
   json["ends"] = blobs_.put("arm.ends", std::span<const float>(frames.ends));
   json["tip"] = blobs_.put("arm.tip", std::span<const Vec3>(frames.tips));

@@ -570,7 +570,7 @@ test("the demo specimen goes from its CT to two cuts side by side", async (t) =>
     await settle(page, "compare");
     const {progress, moments, parts, within, needle} = await page.evaluate(() => window.seenOfRun);
     assert.ok(progress.length > 2 && Math.min(...progress) >= 0 && Math.max(...progress) <= 1, `progress: ${progress}`);
-    // How many of them a page shows depends on how busy the machine is: it skips those that come while one is loading.
+    // A page skips moments that arrive while it loads one: a busy machine shows fewer.
     assert.ok(moments.length > 0 && needle, `moments: ${moments}`);
     assertParts(parts);
     assertForwards(within);

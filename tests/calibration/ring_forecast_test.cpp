@@ -207,6 +207,11 @@ TEST(RingForecaster, RefusesWhatIsNoProfile) {
   EXPECT_NO_THROW(RingForecaster(observations, false));
   observations[0].photographed_mm[3] = std::nan("");
   EXPECT_THROW(RingForecaster(observations, false), InvalidArgument);
+  for (RingObservation& one : observations) one.photographed_mm.assign(8, 0.0);
+  EXPECT_THROW(RingForecaster(observations, false), InvalidArgument) << "fewer than 9 sectors";
+}
+
+TEST(RingForecaster, ForecastsThirtySixSectorsWithoutObservations) {
   EXPECT_EQ(RingForecaster({}, true).forecast({}).residual_mm.size(), 36U);
 }
 

@@ -127,7 +127,7 @@ class CommandTest(unittest.TestCase):
                 shutil.copytree(before, self.out, symlinks=True)
 
     def incise(self, *arguments, status=None, cpu_s=MOST_CPU_S):
-        """The command, once it has ended. @param status: the exit status that it has to end with, if only one is right."""
+        """The command, once it has ended. @param status: the required exit status; None: any."""
         done = self.finished(self.start(*arguments, cpu_s=cpu_s))
         if status is not None:
             self.assertEqual(done.returncode, status, done.stderr)
@@ -181,9 +181,12 @@ class SharedStart:
         cls.kept, cls.starts = pathlib.Path(temporary.name), {}
 
     def begin(self, *arguments, status=DONE):
-        """What a command prints with --json, and what it says, in a folder as it leaves it. Whoever asks has written the same files before."""
+        """The JSON that a command prints and its standard error, with self.folder as the command leaves it. It runs once per class for the same
+        arguments, status and files."""
         here = str(self.folder)
-        key = " ".join(map(str, arguments)).replace(here, ".")
+        written = [self.folder / name for name in files_below(self.folder)]
+        files = tuple((str(file).replace(here, "."), file.read_bytes().replace(here.encode(), b".")) for file in written if file.is_file())
+        key = (" ".join(map(str, arguments)).replace(here, "."), status, files)
         if key in self.starts:
             copy, there, done = self.starts[key]
             shutil.copytree(copy, self.folder, dirs_exist_ok=True)

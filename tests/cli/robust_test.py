@@ -22,7 +22,7 @@ class RobustTest(SharedStart, CommandTest):
         return self.incise("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, *options, status=status)
 
     def begin_robust(self, *options):
-        """As robust, of the case and the calibration that setUp writes."""
+        """As robust, from the shared start."""
         found, said = self.begin("compensate", "case", "-o", self.out, "--robust", "--calibration", self.calibration, *options, status=NOT_ACCEPTABLE)
         return found["robust"], said
 

@@ -82,7 +82,7 @@ def ring(center=TUMOR_CENTER_MM, radius=TUMOR_RADIUS_MM, z=BLOCK_MM[2], corners=
 
 
 def path(points, frame="robot", waypoint=None, **more):
-    """A closed path of a program: `waypoint` and `more` are laid over what every waypoint and the path itself hold."""
+    """The JSON of a closed tool path. @param waypoint: keys laid over those of every waypoint. @param more: keys laid over those of the path."""
     waypoints = [{"position_mm": p, "axis": [0, 0, -1], "depth_mm": 5, "speed_mm_s": 7, **(waypoint or {})} for p in points]
     return {"frame": frame, "kind": "incise", "closed": True, "waypoints": waypoints, **more}
 

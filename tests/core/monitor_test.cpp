@@ -26,7 +26,8 @@ TEST(StopOnly, StopsWithTheOuterMonitorAndTellsItNothing) {
   StopOnly inner(outer);
   inner.message(Severity::Warning, "inner");
   inner.progress("inner", 0.5);
-  EXPECT_TRUE(outer.messages.empty() && outer.fractions.empty());
+  EXPECT_TRUE(outer.messages.empty());
+  EXPECT_TRUE(outer.fractions.empty());
   EXPECT_FALSE(inner.is_cancelled());
   outer.stop = true;
   EXPECT_TRUE(inner.is_cancelled());

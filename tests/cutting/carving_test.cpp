@@ -253,7 +253,7 @@ TEST_F(Carve, TissueThatSlipsStaysWithinTheSlipBehindTheTool) {
   EXPECT_FALSE(state.bonds.empty());
   const ToolPose tool = standing_at(11.5);
   for (const Bond& bond : state.bonds) {
-    const auto corners = corners_of(model_.mesh, state.tissue.positions, bond.tet.index());
+    const auto corners = corners_of(state.tissue.positions, model_.mesh.tets[bond.tet.index()]);
     const Vec3 middle = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
     EXPECT_LE((held_directions(needle_, tool) * (middle - tool.tip_mm - bond.offset_mm)).norm(), 0.1 + 1e-9);
   }
@@ -331,7 +331,7 @@ class Passage : public ::testing::Test {
   }
   /// For how long a needle that does not stay touches a tet, s.
   double passing_s(TetId tet) const {
-    const auto corners = corners_of(model_.mesh, model_.mesh.vertices, tet.index());
+    const auto corners = corners_of(model_.mesh.vertices, model_.mesh.tets[tet.index()]);
     constexpr int kSamples = 40000;
     int touched = 0;
     for (int i = 0; i < kSamples; ++i) {
@@ -362,7 +362,7 @@ TEST_F(Passage, ATetTouchedForATenthOfAPercentMoreGoesAndOneForAPercentLessStays
   std::size_t tested = 0;
   for (std::size_t i = 0; i < model_.mesh.tets.size() && tested < 4; ++i) {
     const TetId tet(i);
-    const auto corners = corners_of(model_.mesh, model_.mesh.vertices, i);
+    const auto corners = corners_of(model_.mesh.vertices, model_.mesh.tets[i]);
     if (distance_to_core(corners, ToolCore(Needle{}, at(kStand))) > 0.1) continue;  // touched before, in and after the stay
     ++tested;
     const double passing = passing_s(tet);

@@ -69,7 +69,7 @@ class PaperRule : public ::testing::Test {
   }
 
   [[nodiscard]] double distance_from_needle(const CutState& state, TetId tet) const {
-    return distance_to_core(corners_of(model_.mesh, state.tissue.positions, tet.index()),
+    return distance_to_core(corners_of(state.tissue.positions, model_.mesh.tets[tet.index()]),
                             ToolCore(needle_, state.tool));
   }
 

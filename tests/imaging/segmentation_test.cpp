@@ -534,6 +534,7 @@ TEST(Segmentation, CautionsWithTheSidesThatTheSpecimenRunsInto) {
   EXPECT_THAT(found.verdict.reasons()[0].message,
               ::testing::AllOf(HasSubstr("2 of 6 sides"), HasSubstr("right ("), HasSubstr("superior (")));
   EXPECT_TRUE(std::is_sorted(monitor.fractions.begin(), monitor.fractions.end()));
+  ASSERT_FALSE(monitor.fractions.empty());
   EXPECT_EQ(monitor.fractions.back(), 1.0);
 }
 

@@ -55,7 +55,7 @@ class TimedCutsTest : public ::testing::Test {
     std::ofstream(folder_ / "cuts.csv") << text;
     return read_timed_cuts(folder_ / "cuts.csv");
   }
-  std::string refusal_of(const std::string& text) {
+  std::string refusal(const std::string& text) {
     return testing::refusal_of<DataError>([&] { return read(text); });
   }
   testing::TemporaryFolder folder_;
@@ -78,23 +78,23 @@ TEST_F(TimedCutsTest, ColumnsMayComeInAnyOrderAmongOthers) {
 
 TEST_F(TimedCutsTest, ABadRowIsNamedByLineAndColumn) {
   EXPECT_THAT(
-      refusal_of("length_mm,time_s\n100,9\n\n100,0\n"),
+      refusal("length_mm,time_s\n100,9\n\n100,0\n"),
       AllOf(HasSubstr("cuts.csv"), HasSubstr("line 4, column time_s"), HasSubstr("found 0"), HasSubstr("above 0")));
-  EXPECT_THAT(refusal_of("length_mm,time_s\n-5,9\n"), HasSubstr("line 2, column length_mm"));
-  EXPECT_THAT(refusal_of("length_mm,time_s\n100,nan\n"), HasSubstr("line 2, column time_s"));
-  EXPECT_THAT(refusal_of("length_mm,time_s\n100\n"), HasSubstr("line 2"));
-  EXPECT_THAT(refusal_of("length_mm,seconds\n100,9\n"), HasSubstr("the column time_s"));
-  EXPECT_THAT(refusal_of("length_mm,time_s\n"), HasSubstr("no rows"));
+  EXPECT_THAT(refusal("length_mm,time_s\n-5,9\n"), HasSubstr("line 2, column length_mm"));
+  EXPECT_THAT(refusal("length_mm,time_s\n100,nan\n"), HasSubstr("line 2, column time_s"));
+  EXPECT_THAT(refusal("length_mm,time_s\n100\n"), HasSubstr("line 2"));
+  EXPECT_THAT(refusal("length_mm,seconds\n100,9\n"), HasSubstr("the column time_s"));
+  EXPECT_THAT(refusal("length_mm,time_s\n"), HasSubstr("no rows"));
 }
 
 TEST_F(TimedCutsTest, ACutThatNobodyMakesIsNamedByLineAndColumn) {
-  EXPECT_THAT(refusal_of("length_mm,time_s\n100,9\n1e300,1e-300\n"),
+  EXPECT_THAT(refusal("length_mm,time_s\n100,9\n1e300,1e-300\n"),
               AllOf(HasSubstr("line 3, column length_mm: found 1e+300"), HasSubstr("1 to 2000 mm")));
-  EXPECT_THAT(refusal_of("length_mm,time_s\n0.1,0.02\n"), HasSubstr("line 2, column length_mm: found 0.1"));
+  EXPECT_THAT(refusal("length_mm,time_s\n0.1,0.02\n"), HasSubstr("line 2, column length_mm: found 0.1"));
   EXPECT_THAT(
-      refusal_of("length_mm,time_s\n30,1e-9\n"),
+      refusal("length_mm,time_s\n30,1e-9\n"),
       AllOf(HasSubstr("line 2, column time_s: found 30 mm in 1e-09 s: 3e+10 mm/s"), HasSubstr("0.5 to 50 mm/s")));
-  EXPECT_THAT(refusal_of("length_mm,time_s\n30,1e300\n"), HasSubstr("line 2, column time_s"));
+  EXPECT_THAT(refusal("length_mm,time_s\n30,1e300\n"), HasSubstr("line 2, column time_s"));
   EXPECT_EQ(read("length_mm,time_s\n100,2\n100,200\n").size(), 2U);
 }
 

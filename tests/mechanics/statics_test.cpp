@@ -104,8 +104,9 @@ TEST(SolveStatic, WarnsOfTissueThatSinksIntoASupport) {
   ASSERT_EQ(sunk.outcome, Outcome::Success);
   EXPECT_GT(sunk.penetration_mm, 0.05);
   ASSERT_EQ(soft.warnings.size(), 1U);
-  EXPECT_THAT(soft.warnings[0], ::testing::AllOf(::testing::HasSubstr("specimen.constraints[2]"),
-                                              ::testing::HasSubstr(fmt::format("up to {:.3g} mm", sunk.penetration_mm))));
+  EXPECT_THAT(soft.warnings[0],
+              ::testing::AllOf(::testing::HasSubstr("specimen.constraints[2]"),
+                               ::testing::HasSubstr(fmt::format("up to {:.3g} mm", sunk.penetration_mm))));
   testing::RecordingMonitor firm;
   EXPECT_LT(solve_static(layered_column(70.0), {}, workers, firm).penetration_mm, 0.05);
   EXPECT_THAT(firm.warnings, ::testing::IsEmpty());

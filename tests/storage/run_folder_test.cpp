@@ -48,7 +48,7 @@ class RunFolderTest : public ::testing::Test {
   template <class Action>
   static void expect_file_refused(const Action& action, const char* file, const char* says) {
     const auto error = testing::error_of<DataError>(action);
-    ASSERT_TRUE(error) << "expected DataError";
+    ASSERT_TRUE(error) << "no DataError for " << file << ": " << says;
     EXPECT_EQ(error->path().filename(), file);
     EXPECT_THAT(error->what(), ::testing::HasSubstr(says));
   }

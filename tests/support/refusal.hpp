@@ -5,9 +5,10 @@
 
 namespace incise::testing {
 
-/// The error of that type that `action` ends in; nothing where it ends well. An error of another type goes on.
+/// Returns the error of type ErrorType that the action throws; nothing if it throws none. Errors of other types
+/// propagate.
 template <class ErrorType, class Action>
-std::optional<ErrorType> error_of(const Action& action) {
+[[nodiscard]] std::optional<ErrorType> error_of(const Action& action) {
   try {
     static_cast<void>(action());
   } catch (const ErrorType& error) {
@@ -16,9 +17,9 @@ std::optional<ErrorType> error_of(const Action& action) {
   return std::nullopt;
 }
 
-/// The message of that error, or "accepted".
+/// Returns the message of that error, or "accepted".
 template <class ErrorType, class Action>
-std::string refusal_of(const Action& action) {
+[[nodiscard]] std::string refusal_of(const Action& action) {
   const std::optional<ErrorType> error = error_of<ErrorType>(action);
   return error ? error->what() : "accepted";
 }

@@ -291,9 +291,9 @@ TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {
 
 TEST(DefaultConstraints, AreRefusedForABodyThatTheirLengthsWereNotMadeFor) {
   const TetMesh small = make_block({6, 9, 5}, {3, 4, 2});
-  EXPECT_THAT([&] { static_cast<void>(default_constraints(small)); },
-              ::testing::ThrowsMessage<CaseError>(
-                  ::testing::AllOf(HasSubstr("specimen.constraints"), HasSubstr("9 mm long"))));
+  EXPECT_THAT(
+      [&] { static_cast<void>(default_constraints(small)); },
+      ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("specimen.constraints"), HasSubstr("9 mm long"))));
 }
 
 /// Photographs of cuts along the planned path, all 0.8 mm too near.

@@ -106,7 +106,8 @@ class RingForecaster {
   ~RingForecaster();
   RingForecaster(RingForecaster&&) noexcept;
 
-  /// Forecasts a ring that has not been simulated, by as many sectors as the observations have; 36 without any.
+  /// Forecasts a ring that has not been simulated, in as many sectors as the observations have, or in 36 if there are
+  /// none.
   [[nodiscard]] RingForecast forecast(const RingCovariates& ring) const;
   /// Predicts how the photograph of this ring will differ from a simulated cut along the planned path.
   /// @param simulated_mm   signed errors of that cut by sector, 9 or more, the calibration's bias added; empty:

@@ -3,6 +3,7 @@
 #include <incise/geometry/tet_mesh.hpp>
 #include <incise/geometry/types.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -30,10 +31,13 @@ struct RasterGrid {
   [[nodiscard]] Vec2 centre(int i, int j) const { return origin_mm + pixel_mm * Vec2(i, j); }
   /// Continuous pixel coordinates of a point of the plane.
   [[nodiscard]] Vec2 index_of(const Vec2& p) const { return (p - origin_mm) / pixel_mm; }
-  /// The pixel (i, j) whose centre is nearest to a point of the plane; it may lie outside the grid.
+  /// The pixel (i, j) whose centre is nearest to a point of the plane; far outside the grid, one just outside it.
   [[nodiscard]] std::array<int, 2> pixel_near(const Vec2& p) const {
+    const auto rounded = [](double at, int count) {
+      return static_cast<int>(std::lround(std::clamp(at, -1.0, static_cast<double>(count))));
+    };
     const Vec2 at = index_of(p);
-    return {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))};
+    return {rounded(at.x(), width), rounded(at.y(), height)};
   }
 };
 

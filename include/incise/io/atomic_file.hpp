@@ -30,9 +30,8 @@ void require_writable(const std::filesystem::path& path);
 /// @throws DataError if it is missing, no regular file, larger than kLargestInputBytes, or unreadable.
 [[nodiscard]] std::string read_text(const std::filesystem::path& path);
 
-/// Makes a folder, and those above it, unless it exists. @param expected  what was expected, for the message
-/// @throws DataError if that fails.
-void make_folder(const std::filesystem::path& folder, const char* expected = "a folder that can be written");
+/// Makes a folder, and those above it, unless it exists. @throws DataError if that fails.
+void make_folder(const std::filesystem::path& folder);
 
 /// Checks that results may replace `folder`: it is missing or empty, or every file in it is listed in the
 /// manifest.json that incise wrote there. First tidies up after killed processes that were writing this folder.

@@ -18,13 +18,13 @@ namespace incise {
 
 /// The cuts by which a laboratory is accepted or refused.
 struct AcceptanceSettings {
-  std::uint64_t specimens = 24;                                 ///< one series; their seeds count up from the run's
+  std::uint64_t specimens = 24;  ///< 1 to 200; one series, its seeds counting up from the run's
   second_bench::Factors factors = second_bench::all_factors();  ///< factors that vary
-  std::optional<double> speed_mm_s;                             ///< speed of every cut; absent: as prescribed
-  std::optional<double> power_w;                                ///< power of every cut; absent: as prescribed
+  std::optional<double> speed_mm_s;                             ///< of every cut, 1 to 15; absent: as prescribed
+  std::optional<double> power_w;                                ///< of every cut, 1 to 120; absent: as prescribed
   std::vector<std::string> overrides;  ///< failed checks of the program to override, see ExportRequest
   bool with_paper_pass = true;  ///< cut each specimen also along the paper's correction
-  int tets = 25000;             ///< target number of tets of the planner's meshes
+  int tets = 25000;             ///< target number of tets of the planner's meshes, above 0
 };
 void describe(Visitor& v, AcceptanceSettings& s);
 
@@ -36,7 +36,8 @@ void describe(Visitor& v, AcceptanceSettings& s);
 ///   S1/ …  as of an experiment;  truth/  the specimens;  acceptance.json  acceptance.csv  manifest.json  bench.json
 ///
 /// @returns the content of acceptance.json: `rows`, one per specimen, and `summary`.
-/// @throws DataError for a folder with other files or another seed, or where a file cannot be written; Cancelled.
+/// @throws InvalidArgument for settings out of their ranges; DataError for a folder with other files or another seed,
+/// or where a file cannot be written; Cancelled.
 [[nodiscard]] nlohmann::ordered_json accept_bench(const AcceptanceSettings& settings,
                                                   const std::filesystem::path& output, const RunContext& run,
                                                   Workers& workers, Monitor& monitor);

@@ -22,7 +22,7 @@ namespace incise {
 struct ExperimentSettings {
   int bench = 1;  ///< virtual laboratory, 1 or 2; specimens of the second form one series, whose number is the seed
   std::uint64_t specimens = 4;  ///< even, 2 to 200: half for calibration, half for the test
-  /// Additional specimens, unlike the others. Absent: one on the first bench with four specimens, else none.
+  /// Additional specimens, unlike the others, 0 to 200. Absent: one on the first bench with four specimens, else none.
   std::optional<std::uint64_t> outside;
   std::filesystem::path truth;       ///< empty: truth/ in the output
   bool is_quick = false;             ///< omit Table I
@@ -35,7 +35,7 @@ struct ExperimentSettings {
   /// ascending; numbers that are not below the number of all photographs are ignored. Only with the rivals.
   std::vector<std::size_t> learning;
   std::vector<std::string> overrides;  ///< failed checks of every program to override, see ExportRequest
-  int tets = 25000;                  ///< target number of tets of the planner's meshes
+  int tets = 25000;                    ///< target number of tets of the planner's meshes, 5000 to 500000
   CutRule rule = CutRule::Tets;      ///< rule of the planner's simulated cuts
 };
 void describe(Visitor& v, ExperimentSettings& s);

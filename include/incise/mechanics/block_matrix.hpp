@@ -41,7 +41,7 @@ struct BlockMatrix {
   [[nodiscard]] const double* block(std::int32_t slot) const {
     return values.data() + 9 * static_cast<std::size_t>(slot);
   }
-  /// Returns the same numbers as a matrix, which may be assigned and added to.
+  /// Returns the block of a slot, mN/mm, as a 3x3 matrix that can be assigned and added to.
   [[nodiscard]] auto at(std::int32_t slot) { return Eigen::Map<RowMajor>(block(slot)); }
   [[nodiscard]] auto at(std::int32_t slot) const { return Eigen::Map<const RowMajor>(block(slot)); }
 

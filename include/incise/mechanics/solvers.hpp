@@ -28,7 +28,7 @@ struct PcgSettings {
 
 struct PcgReport {
   bool converged = false;
-  int iterations = 0;          ///< of a system that was solved again in double precision: both solutions'
+  int iterations = 0;          ///< of both solves together if the system was solved again in double precision
   double residual_mn = 0.0;    ///< |r| at the end
   bool is_indefinite = false;  ///< a direction of zero or negative stiffness was met
 };

@@ -99,7 +99,7 @@ class RunFolder : public Inputs, public ProductSink {
   /// @throws DataError if an input cannot be read.
   void remove_what_is_out_of_date(Stage until, Monitor& monitor);
 
-  /// Returns a path that states the case's specimen.
+  /// Returns the path with the case's specimen id and whether the specimen is virtual.
   [[nodiscard]] ToolPath with_specimen(ToolPath path);
   /// Writes manifest.json into an output folder of this run. @param verdict  of the run; null: none
   void write_manifest_to(const std::filesystem::path& folder, double wall_s, const Verdict* verdict = nullptr);

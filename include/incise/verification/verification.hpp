@@ -17,6 +17,7 @@ struct CheckCurve {
   std::vector<double> x;
   std::vector<double> y;      ///< as many as x, all finite
   bool is_reference = false;  ///< true: known values, drawn as a line; false: values found, drawn as marks
+  /// Adds the point (at, value), in the units of the axes.
   void add(double at, double value) {
     x.push_back(at);
     y.push_back(value);

@@ -3,7 +3,7 @@
 import {isFresh} from "./store.js";
 import {intended, isDark} from "./colours.js";
 
-/** Whether the path of a plan is a ring, as it is where there is no plan yet. */
+/** Whether the path of a plan is a ring; true without a plan. */
 export function isRing(plan) {
   return !(plan && plan.path) || plan.path.closed !== false;
 }

@@ -8,7 +8,7 @@ import {
   Button,
   Explained,
   NumberInput,
-  PointInput,
+  VectorInput,
   Section,
   complaint,
   problemAt,
@@ -115,7 +115,7 @@ function Numbered({pose}) {
   return h(
     "div",
     {"data-place": "upright"},
-    h(PointInput, {
+    h(VectorInput, {
       label: name,
       value: place.map((value) => Number(value.toFixed(2))),
       onChange: (next) => put(poseOf(turn, point, next)),

@@ -11,7 +11,7 @@ import {
   Explained,
   NumberInput,
   Numbers,
-  PointInput,
+  VectorInput,
   Problems,
   Section,
   StepLinks,
@@ -137,7 +137,7 @@ function Ellipse() {
       onChange: (next) => set({diameters: next}),
     }),
     h(NumberInput, {label: "Turn", unit: "deg", value: edge.turn || 0, step: 5, onChange: (turn) => set({turn})}),
-    h(PointInput, {
+    h(VectorInput, {
       label: "Middle",
       value: centre ? centre.map((value) => Number(value.toFixed(1))) : null,
       onChange: (next) => set({centre: next}),
@@ -174,7 +174,7 @@ function Points() {
       ),
     ),
     chosen
-      ? h(PointInput, {
+      ? h(VectorInput, {
           label: `Point ${edge.selected + 1}`,
           value: chosen.map((value) => Number(value.toFixed(2))),
           step: 0.5,

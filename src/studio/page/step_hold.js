@@ -10,7 +10,7 @@ import {
   Choice,
   Explained,
   NumberInput,
-  PointInput,
+  VectorInput,
   Problems,
   Section,
   Settings,
@@ -279,7 +279,7 @@ function Count({vertices}) {
 
 function Own({one, set}) {
   if (one.kind === "displaced") {
-    return h(PointInput, {
+    return h(VectorInput, {
       label: "Displacement",
       value: one.displacement_mm,
       hint: "x to the patient's left, y to the back, z to the head: y −8 pulls 8 mm forwards.",
@@ -287,7 +287,7 @@ function Own({one, set}) {
     });
   }
   if (one.kind === "traction") {
-    return h(PointInput, {
+    return h(VectorInput, {
       label: "Traction",
       unit: "kPa",
       value: one.traction_kpa,
@@ -305,7 +305,7 @@ function PlaneInputs({plane, onChange}) {
   return h(
     "div",
     null,
-    h(PointInput, {
+    h(VectorInput, {
       label: "Point",
       value: plane.point_mm,
       onChange: (point_mm) => onChange({...plane, point_mm}),
@@ -326,7 +326,7 @@ function Direction({label, value, onChange}) {
       onChange: choose,
       options: [...kWords.map((word) => [word, directionText(word)]), ["other", "Three numbers"]],
     }),
-    isOther ? h(PointInput, {label: `${label}, x y z`, unit: "", value, step: 0.1, onChange}) : null,
+    isOther ? h(VectorInput, {label: `${label}, x y z`, unit: "", value, step: 0.1, onChange}) : null,
   );
 }
 
@@ -380,7 +380,7 @@ function RegionInputs({kind, value, onChange}) {
       "div",
       null,
       ["Low corner", "High corner"].map((label, side) =>
-        h(PointInput, {
+        h(VectorInput, {
           key: label,
           label,
           value: value[side],
@@ -393,7 +393,7 @@ function RegionInputs({kind, value, onChange}) {
     return h(
       "div",
       null,
-      h(PointInput, {label: "Centre", value: value.center_mm, onChange: (center_mm) => set({center_mm})}),
+      h(VectorInput, {label: "Centre", value: value.center_mm, onChange: (center_mm) => set({center_mm})}),
       h(Length, {label: "Radius", value: value.radius_mm, onChange: (radius_mm) => set({radius_mm})}),
     );
   }

@@ -46,7 +46,7 @@ export function RunButton({text}) {
   ];
 }
 
-/** In place of a result that is not there. */
+/** Shown while there is no result. */
 export function NotRun() {
   const text = "This case has not been run in this session. A result in the cache comes at once.";
   return [h("p", {key: "about", class: "soft"}, text), h(RunButton, {key: "run", text: "Run"})];

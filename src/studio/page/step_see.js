@@ -11,7 +11,7 @@ import {
   Facts,
   NumberInput,
   OddSize,
-  PointInput,
+  VectorInput,
   Problems,
   Reasons,
   Section,
@@ -102,7 +102,7 @@ function Picture() {
     hasScan ? h(Extent, {scan}) : null,
     hasScan ? h(Greys) : null,
     h(Overlay),
-    h(PointInput, {
+    h(VectorInput, {
       label: "Crosshair",
       value: here && here.map((value) => Number(value.toFixed(1))),
       onChange: (point) => showPlace(point),
@@ -199,8 +199,8 @@ function Box() {
   return h(
     Section,
     {title: "Region box", id: "box"},
-    h(PointInput, {label: "Low corner", value: box[0], onChange: put(0)}),
-    h(PointInput, {label: "High corner", value: box[1], onChange: put(1), problem: problemAt("ct.roi_box_mm")}),
+    h(VectorInput, {label: "Low corner", value: box[0], onChange: put(0)}),
+    h(VectorInput, {label: "High corner", value: box[1], onChange: put(1), problem: problemAt("ct.roi_box_mm")}),
     rowOf(
       h(Button, {onClick: () => fitBox(box)}, "Zoom to the box"),
       h(Button, {onClick: () => putBox(null)}, "Remove the box"),
@@ -217,7 +217,7 @@ function Seed() {
     Section,
     {title: "Seed", id: "seed"},
     seed
-      ? h(PointInput, {
+      ? h(VectorInput, {
           label: "Point inside the tissue",
           value: seed,
           problem: problemAt("ct.seed_mm"),

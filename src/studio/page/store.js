@@ -56,7 +56,7 @@ export function newPatch() {
   return {k: -1, isEmpty: false, radius_mm: 5, stroke: [], refused: 0};
 }
 
-/** Of a case nothing is computed yet. */
+/** The results of a case before anything is computed. */
 export function nothingFound() {
   return {scan: null, tissue: null, body: null, stretch: null, plan: null, room: null, run: null, moment: null};
 }

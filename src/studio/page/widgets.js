@@ -175,12 +175,12 @@ export function Numbers({label, names, unit, value, step, onChange, problem, hin
   );
 }
 
-/** Numbers along x, y and z: of a point, mm, if nothing else is said. */
-export function PointInput(about) {
+/** A vector's x, y and z; in mm unless another unit is given. */
+export function VectorInput(about) {
   return h(Numbers, {unit: "mm", names: ["x", "y", "z"], step: 1, ...about});
 }
 
-/** A slider from 0 on. @param said  its value in words   @param isUnseen  its label is for screen readers alone */
+/** A slider from 0 to `max`. @param said  its value in words   @param isUnseen  its label is for screen readers alone */
 export function Slider({label, isUnseen, max, step, value, said, onInput}) {
   const id = useId("slider");
   return h(
