@@ -237,17 +237,24 @@ class Splitter {
     for (std::size_t i = begin; i < end; ++i) {
       if (lattice_.tet_of(i) == star.tet) own.push_back(i);
     }
-    for (const std::size_t i : own) {  // a parted point moves with the nearest one that is not
-      double least = std::numeric_limits<double>::infinity();
-      for (std::size_t g = 0; g < groups.size(); ++g) {
-        for (const std::size_t p : groups[g].second) {
-          for (const std::size_t k : parts_[p].points) {
-            const double apart = distance(i, k);
-            if (apart >= least) continue;
-            least = apart;
-            state_.points.tet_of[i] = ids[g];
-          }
+    std::vector<std::pair<Vec3, TetId>> left;  // at rest, mm
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      for (const std::size_t p : groups[g].second) {
+        for (const std::size_t k : parts_[p].points) {
+          left.emplace_back(lattice_.rest_position(k), ids[g]);
+          state_.points.tet_of[k] = ids[g];
         }
+      }
+    }
+    for (const std::size_t i : own) {  // a point of no part moves with the nearest one that has a part
+      if (!is_parted(i) && lattice_.volume_mm3(i) != 0.0) continue;
+      const Vec3 place = lattice_.rest_position(i);
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& [other, tet] : left) {
+        const double apart = (place - other).norm();
+        if (apart >= least) continue;
+        least = apart;
+        state_.points.tet_of[i] = tet;
       }
     }
     const double volume_mm3 = model_.volumes_mm3[star.tet.index()];
