@@ -290,7 +290,7 @@ class AfterTheCut(StudioTest):
         self.json_of("phantom", "--seed", 3, "-o", "specimen")
         studio = self.studio(self.folder / "specimen")
         revision = studio.call("case")[1]["revision"]
-        self.assertEqual(studio.call("change", {"revision": revision, "set": {"meshing.tets": 6000}})[0], 200)
+        self.assertEqual(studio.call("change", {"revision": revision, "set": {"meshing.tets": 6000, "cut.advance_per_step_mm": 0.8, "compensation.method": "paper"}})[0], 200)
         self.assertEqual(studio.call("lay", {})[1]["problem"]["path"], "registration")
         status, cloud = studio.call("virtual_cloud", {"seed": 4})
         self.assertEqual((status, cloud["cloud_is"], cloud["name"]), (200, "virtual", "virtual_cloud.ply"), cloud)
