@@ -90,7 +90,7 @@ function(incise_test name)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_precompile_headers(${target} REUSE_FROM incise_test_headers)
   if(ARG_IN_GROUPS)
-    incise_compile_in_groups(${target} 5)  # a test's private names are short: more of them have a twin
+    incise_compile_in_groups(${target} 8)  # a test's private names are short: more of them have a twin
   endif()
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${target} PRIVATE ${ARG_USES} ${ARG_LINK} incise_test_support GTest::gtest_main GTest::gmock incise_warnings)

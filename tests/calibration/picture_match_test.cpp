@@ -1,3 +1,5 @@
+#include "support/directions.hpp"
+
 #include <incise/calibration/picture_match.hpp>
 #include <incise/core/units.hpp>
 
@@ -27,8 +29,6 @@ Contour placed(Contour edge, double turn_deg, const Vec3& shift, bool is_mirrore
   }
   return edge;
 }
-
-const Vec3 kDown = -Vec3::UnitZ();
 
 TEST(PictureMatch, FindsASmallTurnAndTheShift) {
   const PictureMatch match =

@@ -18,22 +18,22 @@ TEST(Expect, NotesWhatIsNotValidNotFiniteOrOutOfRange) {
                                                             "speed_mm_s: found inf, expected a speed above 0 mm/s"));
 }
 
-struct Inner {
+struct Layer {
   double share = 0.5;
   Eigen::Vector3d way = Eigen::Vector3d::UnitX();
 };
-void describe(Visitor& v, Inner& i) {
+void describe(Visitor& v, Layer& i) {
   v("share", i.share, "Of one.", {0.0, 1.0});
   v.direction("way", i.way, "Where to.");
 }
-struct Outer {
-  Inner first;
-  std::vector<Inner> others;
+struct Stack {
+  Layer first;
+  std::vector<Layer> others;
   std::vector<double> depths_mm;
   std::optional<double> limit;
   int count = 1;
 };
-void describe(Visitor& v, Outer& o) {
+void describe(Visitor& v, Stack& o) {
   v("first", o.first, "One.");
   v("others", o.others, "More.");
   v("depths_mm", o.depths_mm, "Each above 0.", kPositive);
@@ -42,9 +42,9 @@ void describe(Visitor& v, Outer& o) {
 }
 
 TEST(ProblemsOf, NamesEachNumberThatTheDescriptionDoesNotAllow) {
-  EXPECT_THAT(problems_of(Outer{}), ::testing::IsEmpty());
+  EXPECT_THAT(problems_of(Stack{}), ::testing::IsEmpty());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Outer bad{.first = {nan, Eigen::Vector3d::Zero()},
+  const Stack bad{.first = {nan, Eigen::Vector3d::Zero()},
                   .others = {{}, {1.5, Eigen::Vector3d(0.0, nan, 0.0)}},
                   .depths_mm = {1.0, 0.0, -1.0},
                   .limit = -2.0,

@@ -1,4 +1,5 @@
 #include "kerf.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
 
@@ -11,7 +12,6 @@ namespace {
 
 constexpr double kRadiusMm = 9.0;
 const Vec3 kMiddle(16.0, 16.0, 8.0);
-const Vec3 kDown(0, 0, -1);
 
 ToolPath ring(double depth_mm, double turn = 1.0) {
   ToolPath path;

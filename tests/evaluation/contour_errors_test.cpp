@@ -1,4 +1,5 @@
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/evaluation/contour_errors.hpp>
@@ -10,8 +11,6 @@
 
 namespace incise {
 namespace {
-
-const Vec3 kDown = -Vec3::UnitZ();
 
 Contour square(double half) {
   return {.points = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}}, .is_closed = true};

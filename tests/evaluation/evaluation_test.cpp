@@ -1,4 +1,5 @@
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/evaluation/evaluation.hpp>
@@ -14,7 +15,6 @@
 namespace incise {
 namespace {
 
-const Vec3 kDown = -Vec3::UnitZ();
 /// A polygon of 1440 corners in place of a circle of 10 to 20 mm radius.
 constexpr double kPolygonMm = 1e-4;
 

@@ -1,3 +1,5 @@
+#include "support/directions.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/evaluation/hausdorff.hpp>
 
@@ -8,8 +10,6 @@
 
 namespace incise {
 namespace {
-
-const Vec3 kDown(0, 0, -1);
 
 /// An arc of a circle, degrees; closed when it is the whole of it.
 Contour arc(double radius, double from_deg, double to_deg, double height = 0.0) {

@@ -1,6 +1,8 @@
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
 #include <incise/evaluation/hu.hpp>
 #include <incise/evaluation/level_loop.hpp>
 
@@ -9,13 +11,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace incise {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-const Vec3 kDown = -Vec3::UnitZ();
+using units::kPi;
 
 std::array<double, 7> hu_of(const Contour& contour) {
   return filled_moments(contour, kDown).hu;

@@ -1,19 +1,19 @@
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
 #include <incise/evaluation/level_loop.hpp>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace incise {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-const Vec3 kDown = -Vec3::UnitZ();
+using units::kPi;
 
 TEST(LevelLoop, FollowsACircleCounterClockwise) {
   const auto field = [](const Vec2& p) { return p.norm() - 5.0; };

@@ -1,15 +1,16 @@
 #include "fuzz/fuzz_paths.hpp"
 
 #include <incise/core/random.hpp>
+#include <incise/core/units.hpp>
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace incise::testing {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using units::kPi;
+
 const Vec3 kTop(15.0, 10.0, 10.0);  // middle of the block's upper face
 
 void add(ToolPath& path, const Vec3& position, double depth, const Vec3& axis = -Vec3::UnitZ()) {

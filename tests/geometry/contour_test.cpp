@@ -1,3 +1,5 @@
+#include "support/directions.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
 #include <incise/geometry/contour.hpp>
@@ -11,7 +13,6 @@ namespace incise {
 namespace {
 
 constexpr double kRounding = 1e-12;
-const Vec3 kDown(0, 0, -1);
 
 Contour square(double side, double height = 0.0) {
   return {{{0, 0, height}, {side, 0, height}, {side, side, height}, {0, side, height}}, true};

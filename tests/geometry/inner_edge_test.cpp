@@ -1,4 +1,5 @@
 #include "geometry/carved_block.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/geometry/kerf_contours.hpp>
@@ -14,7 +15,6 @@ namespace incise {
 namespace {
 
 using testing::Corners;
-const Vec3 kDown(0, 0, -1);
 constexpr std::size_t kSectors = 180;
 
 /// A round plug, a trough around it and skin outside: a surface of rings of triangles, with heights added by `height`.

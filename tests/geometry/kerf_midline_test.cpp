@@ -1,4 +1,5 @@
 #include "geometry/carved_block.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/geometry/kerf_contours.hpp>
@@ -14,7 +15,6 @@ namespace {
 
 using testing::Corners;
 constexpr double kReach = 0.75;  // electrode radius and contact range
-const Vec3 kDown(0, 0, -1);
 
 const TetMesh& block() {
   static const TetMesh mesh = testing::jittered_block({36, 36, 5}, 0.62, 1);

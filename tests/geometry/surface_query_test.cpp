@@ -1,3 +1,5 @@
+#include "support/directions.hpp"
+
 #include <incise/core/error.hpp>
 #include <incise/core/random.hpp>
 #include <incise/geometry/surface_query.hpp>
@@ -12,7 +14,6 @@ namespace incise {
 namespace {
 
 constexpr double kRounding = 1e-9;
-const Vec3 kDown(0, 0, -1);
 
 TriMesh block_surface() {
   return boundary_surface(make_block({4, 3, 2}, {4, 3, 2}));

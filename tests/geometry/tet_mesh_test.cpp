@@ -13,12 +13,13 @@ namespace {
 
 using Kind = MeshProblem::Kind;
 
-VertexId v(std::size_t i) {
+VertexId vertex_id(std::size_t i) {
   return VertexId{i};
 }
 
 TetMesh one_tet() {
-  TetMesh mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, .tets = {{v(0), v(1), v(2), v(3)}}};
+  TetMesh mesh{.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+               .tets = {{vertex_id(0), vertex_id(1), vertex_id(2), vertex_id(3)}}};
   return mesh;
 }
 
@@ -130,8 +131,8 @@ TEST(FindProblems, FindsANumberThatIsNotFinite) {
 
 TEST(FindProblems, FindsIndicesOutOfRangeWithoutReadingThem) {
   TetMesh mesh = one_tet();
-  mesh.tets.push_back({v(0), v(1), v(2), v(4)});
-  mesh.tets.push_back({v(0), v(1), v(2), VertexId{}});
+  mesh.tets.push_back({vertex_id(0), vertex_id(1), vertex_id(2), vertex_id(4)});
+  mesh.tets.push_back({vertex_id(0), vertex_id(1), vertex_id(2), VertexId{}});
   const auto problems = find_problems(mesh);
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].kind, Kind::IndexOutOfRange);
@@ -150,7 +151,7 @@ TEST(FindProblems, FindsInvertedAndFlatTets) {
 
 TEST(FindProblems, FindsDuplicateTetsWhateverTheOrderOfTheirCorners) {
   TetMesh mesh = one_tet();
-  mesh.tets.push_back({v(1), v(2), v(0), v(3)});
+  mesh.tets.push_back({vertex_id(1), vertex_id(2), vertex_id(0), vertex_id(3)});
   EXPECT_THAT(kinds_of(mesh), ::testing::ElementsAre(Kind::DuplicateTet));
 }
 
@@ -158,8 +159,8 @@ TEST(FindProblems, FindsAFaceOfThreeTets) {
   TetMesh mesh = one_tet();
   mesh.vertices.push_back({0, 0, -1});
   mesh.vertices.push_back({0.1, 0.1, -1});
-  mesh.tets.push_back({v(0), v(2), v(1), v(4)});
-  mesh.tets.push_back({v(0), v(2), v(1), v(5)});
+  mesh.tets.push_back({vertex_id(0), vertex_id(2), vertex_id(1), vertex_id(4)});
+  mesh.tets.push_back({vertex_id(0), vertex_id(2), vertex_id(1), vertex_id(5)});
   EXPECT_THAT(kinds_of(mesh), ::testing::ElementsAre(Kind::NonManifoldFace));
 }
 
@@ -167,7 +168,7 @@ TEST(FindProblems, FindsUnusedVerticesAndLooseParts) {
   TetMesh mesh = one_tet();
   for (int i = 0; i < 4; ++i) mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(i)] + Vec3(5, 0, 0));
   EXPECT_THAT(kinds_of(mesh), ::testing::ElementsAre(Kind::UnusedVertex));
-  mesh.tets.push_back({v(4), v(5), v(6), v(7)});
+  mesh.tets.push_back({vertex_id(4), vertex_id(5), vertex_id(6), vertex_id(7)});
   const auto problems = find_problems(mesh);
   ASSERT_EQ(problems.size(), 1U);
   EXPECT_EQ(problems[0].kind, Kind::Disconnected);

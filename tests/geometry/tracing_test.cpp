@@ -1,5 +1,6 @@
 #include "geometry/pictures.hpp"
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/random.hpp>
 #include <incise/geometry/gaussian.hpp>
@@ -14,7 +15,6 @@ namespace {
 
 using testing::circle;
 using testing::drawn;
-const Vec3 kDown(0, 0, -1);
 
 TEST(LongestPath, RunsThroughAForkByItsLongestBranches) {
   const std::optional<Contour> path =

@@ -1,6 +1,5 @@
 // What must not pass for one simple red and one simple green ring without a word.
 #include "photo_scene.hpp"
-#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 
@@ -16,10 +15,6 @@ using namespace photo_scene;
 using ::testing::HasSubstr;
 
 const Vec3 kMiddle(15.0, 15.0, 0.0);
-
-std::string refusal(const Scene& s) {
-  return testing::refusal_of<DataError>([&] { return found_in(s); });
-}
 
 /// r = size (1 + a cos t): for a > 1 the curve crosses itself and has an inner loop.
 Contour limacon(double size, double a, const Vec3& crossing) {

@@ -93,13 +93,6 @@ TEST(FindPhotoContours, AnIncisionThatCutsIntoTheTumorIsAResult) {
   EXPECT_EQ(evaluate(found.incision, found.tumor_edge, settings).outcome, Outcome::PositiveMargin);
 }
 
-/// What the refusal of a scene says.
-std::string refusal(const Scene& s, double mm_per_pixel = kScale) {
-  const ColorPicture picture = photographed(s);
-  return testing::refusal_of<DataError>(
-      [&] { return find_photo_contours(picture, scale_from_mm_per_pixel(mm_per_pixel, picture.height), {}, kName); });
-}
-
 TEST(FindPhotoContours, RefusesAGapThatIsNegativeOrNotFinite) {
   const ColorPicture grey{8, 8, std::vector<std::uint8_t>(3 * 8 * 8, 128)};
   for (const double gap_mm : {-0.5, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <map>
 
 namespace incise {
@@ -16,11 +15,7 @@ namespace {
 
 using namespace photo_scene;
 
-/// Pictures of each kind; the long form is asked for by hand.
-int cases() {
-  const char* const asked = std::getenv("INCISE_PHOTO_CASES");
-  return asked == nullptr ? 6 : std::atoi(asked);
-}
+const int kScenes = photo_cases(6);  // of each kind
 
 Scene random_scene(Random& random, bool is_kerf) {
   const double width_px = is_kerf ? random.uniform(30.0, 60.0) : random.uniform(3.0, 12.0);
@@ -72,15 +67,15 @@ std::string said_of(const Scene& s) {
 std::map<std::string, int> counted(bool is_kerf, bool bleeds, std::uint64_t seed) {
   Random random(seed);
   std::map<std::string, int> counts;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kScenes; ++i) {
     Scene s = random_scene(random, is_kerf);
     if (bleeds) bleed_over_opening(s, random);
     const std::string said = said_of(s);
     ++counts[said.substr(0, said.find(':'))];
-    if (cases() > 50 && (said.starts_with("doubt") != bleeds))
+    if (kScenes > 50 && (said.starts_with("doubt") != bleeds))
       fmt::print("  {} px: {}\n", s.photo.lines.back().width_mm / kScale, said);
   }
-  if (cases() > 50) {
+  if (kScenes > 50) {
     for (const auto& [what, count] : counts) fmt::print("{} {}\n", count, what);
   }
   return counts;
@@ -90,13 +85,13 @@ TEST(RandomRing, SoundOnesAreNotDoubted) {
   // One in a hundred may be called open or unclear: a highlight longer than the largest gap lies over its line.
   for (const bool is_kerf : {false, true}) {
     const std::map<std::string, int> counts = counted(is_kerf, false, is_kerf ? 2 : 1);
-    EXPECT_LE(counts.contains("doubt") ? counts.at("doubt") : 0, 0.01 * cases());
+    EXPECT_LE(counts.contains("doubt") ? counts.at("doubt") : 0, 0.01 * kScenes);
   }
 }
 
 TEST(RandomRing, BloodOverAnOpeningIsFoundOut) {
-  EXPECT_LE(counted(false, true, 3)["ok"], 0.1 * cases());
-  EXPECT_LE(counted(true, true, 4)["ok"], 0.1 * cases());
+  EXPECT_LE(counted(false, true, 3)["ok"], 0.1 * kScenes);
+  EXPECT_LE(counted(true, true, 4)["ok"], 0.1 * kScenes);
 }
 
 TEST(RingDoubts, SayThatAGapIsLongerThanAllowed) {

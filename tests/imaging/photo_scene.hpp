@@ -3,6 +3,7 @@
 #include "support/contour_shapes.hpp"
 #include "support/encode_jpeg.hpp"
 #include "support/photo_painter.hpp"
+#include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/evaluation/evaluation.hpp>
@@ -11,6 +12,8 @@
 #include <incise/io/picture_io.hpp>
 
 #include <gtest/gtest.h>
+
+#include <cstdlib>
 
 namespace incise::photo_scene {
 
@@ -23,6 +26,12 @@ inline constexpr double kContourMm = 0.03;  // the bar: mean absolute error of a
 inline constexpr double kMeasureMm = 0.02;  // of a measure in mm
 inline constexpr double kHu = 0.01;         // of a Hu score
 inline const char* const kName = "photo.jpg";
+
+/// Number of random pictures of each kind: INCISE_PHOTO_CASES, which asks for the long form, else `unless_asked`.
+inline int photo_cases(int unless_asked) {
+  const char* const asked = std::getenv("INCISE_PHOTO_CASES");
+  return asked == nullptr ? unless_asked : std::atoi(asked);
+}
 
 /// A tumour of 12 mm with its incision 4.5 mm outside, moved a little, as a photograph with everything that photographs
 /// suffer from.
@@ -62,6 +71,14 @@ inline PhotoContours found_in(const ColorPicture& picture, RedLine red = RedLine
 
 inline PhotoContours found_in(const Scene& s) {
   return found_in(photographed(s), s.red);
+}
+
+/// What the refusal of a scene says.
+inline std::string refusal(const Scene& s, double mm_per_pixel = kScale) {
+  const ColorPicture picture = photographed(s);
+  return testing::refusal_of<DataError>([&] {
+    return find_photo_contours(picture, scale_from_mm_per_pixel(mm_per_pixel, picture.height), {.red = s.red}, kName);
+  });
 }
 
 inline double mean_error(const Contour& found, const Contour& truth) {

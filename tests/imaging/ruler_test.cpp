@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <cstdlib>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -22,12 +21,7 @@ using testing::PaintedLine;
 using testing::PaintedPhoto;
 
 constexpr double kInchMm = 25.4;
-
-/// Pictures of each kind; the long form is asked for by hand.
-int cases() {
-  const char* const asked = std::getenv("INCISE_PHOTO_CASES");
-  return asked == nullptr ? 8 : std::atoi(asked);
-}
+const int kRulers = photo_scene::photo_cases(8);  // of each kind
 
 /// One edge of a ruler.
 struct Scale {
@@ -161,14 +155,14 @@ class Counts {
 
 /// Nearly all are found out; the long form prints how many.
 void expect_found_out(const char* kind, const Counts& counts, double least_share) {
-  if (cases() > 50) fmt::print("{}:\n{}", kind, counts.text());
-  EXPECT_LE(counts.of("ok"), (1.0 - least_share) * cases()) << counts.text();
+  if (kRulers > 50) fmt::print("{}:\n{}", kind, counts.text());
+  EXPECT_LE(counts.of("ok"), (1.0 - least_share) * kRulers) << counts.text();
 }
 
 TEST(RandomRuler, SoundOnesAreMeasured) {
   Random random(1);
   Counts counts;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kRulers; ++i) {
     const Drawn drawn = random_drawing(random);
     Said said = said_of(photographed(drawn), RulerKind::Ticks, {});
     if (said.what == "ok" && std::abs(said.mm_per_pixel / drawn.photo.mm_per_pixel - 1.0) > 0.005) {
@@ -176,8 +170,8 @@ TEST(RandomRuler, SoundOnesAreMeasured) {
     }
     counts.add(said);
   }
-  if (cases() > 50) fmt::print("sound:\n{}", counts.text());
-  EXPECT_GE(counts.of("ok"), 0.99 * cases()) << counts.text();
+  if (kRulers > 50) fmt::print("sound:\n{}", counts.text());
+  EXPECT_GE(counts.of("ok"), 0.99 * kRulers) << counts.text();
 }
 
 /// What is said of many random rulers, each changed first. @param change  of (drawn, random, number of the ruler)
@@ -185,7 +179,7 @@ template <class Change>
 Counts said_of_changed(std::uint64_t seed, const Change& change, std::optional<double> length_mm = 1.0) {
   Random random(seed);
   Counts counts;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kRulers; ++i) {
     Drawn drawn = random_drawing(random);
     change(drawn, random, i);
     counts.add(said_of(photographed(drawn), RulerKind::Ticks, length_mm));
@@ -218,7 +212,7 @@ TEST(RandomRuler, HalfMillimetresAlongAPartAreFoundOut) {
 TEST(RandomRuler, ASecondRulerOfAnotherUnitIsFoundOut) {
   Random random(4);
   Counts counts;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kRulers; ++i) {
     Drawn drawn = random_drawing(random);
     const double side = drawn.photo.width * drawn.photo.mm_per_pixel;
     DrawnRuler& first = drawn.ruler;
@@ -238,7 +232,7 @@ TEST(RandomRuler, ASecondRulerOfAnotherUnitIsFoundOut) {
 TEST(RandomRuler, AnObliqueViewIsFoundOut) {
   Random random(5);
   Counts counts;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kRulers; ++i) {
     const Drawn drawn = random_drawing(random);
     const testing::TiltedCamera camera{.tilt_rad = random.uniform(30.0, 45.0) * std::numbers::pi / 180.0,
                                        .azimuth_rad = random.uniform(0.0, 2.0 * std::numbers::pi),
@@ -251,7 +245,7 @@ TEST(RandomRuler, AnObliqueViewIsFoundOut) {
 TEST(RandomRuler, AnUncorrectedLensIsFoundOut) {
   Random random(6);
   Counts counts;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kRulers; ++i) {
     const Drawn drawn = random_drawing(random);
     counts.add(said_of(testing::through_barrel(photographed(drawn), random.uniform(0.08, 0.2))));
   }
@@ -261,7 +255,7 @@ TEST(RandomRuler, AnUncorrectedLensIsFoundOut) {
 TEST(RandomRuler, ABarIsNotLookedForAmongTicks) {
   Random random(7);
   Counts counts;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kRulers; ++i) {
     counts.add(said_of(photographed(random_drawing(random)), RulerKind::Bar, 5.0));
   }
   expect_found_out("ticks taken for a bar", counts, 1.0);
@@ -290,7 +284,7 @@ TEST(RandomRuler, FaintHalfMillimetresAreFoundOut) {
 TEST(RandomRuler, HalfMillimetresOfTwoLengthsAskForTheirDistance) {
   Random random(10);
   Counts counts, told;
-  for (int i = 0; i < cases(); ++i) {
+  for (int i = 0; i < kRulers; ++i) {
     Drawn drawn = random_drawing(random);
     drawn.ruler.scales.front().step_mm = 0.5;
     drawn.ruler.scales.front().second_share = random.uniform(0.55, 0.75);
@@ -300,7 +294,7 @@ TEST(RandomRuler, HalfMillimetresOfTwoLengthsAskForTheirDistance) {
     told.add(said_of(picture, RulerKind::Ticks, 0.5));
   }
   expect_found_out("half millimetres of two lengths", counts, 0.98);
-  EXPECT_GE(told.of("ok"), 0.98 * cases()) << told.text();
+  EXPECT_GE(told.of("ok"), 0.98 * kRulers) << told.text();
 }
 
 TEST(FindRuler, TakesASecondRulerAcrossForATest) {

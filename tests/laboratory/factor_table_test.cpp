@@ -12,7 +12,7 @@
 namespace incise::laboratory {
 namespace {
 
-using testing::IsEmpty;
+using ::testing::IsEmpty;
 
 constexpr std::size_t kDirections = 36;
 constexpr double kNoiseMm = 0.02;

@@ -9,6 +9,11 @@
 
 namespace incise::testing {
 
+// Central differences of a smooth function at a step of 1e-5 mm: truncation ~ 1e-10, cancellation ~ 1e-11 of its size.
+inline constexpr double kDifferenceStep = 1e-5;
+inline constexpr double kDifferenceTolerance = 1e-6;
+inline constexpr double kRounding = 1e-12;
+
 /// The plane x = at of a block, as a region.
 inline Region plane_x(double at) {
   return BoxRegion{Box3(Vec3(at - 1e-6, -1e3, -1e3), Vec3(at + 1e-6, 1e3, 1e3))};

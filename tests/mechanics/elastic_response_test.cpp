@@ -14,15 +14,13 @@ using testing::block_of;
 using testing::clamped_block;
 using testing::dense;
 using testing::elastic_forces;
+using testing::kDifferenceStep;
+using testing::kDifferenceTolerance;
+using testing::kRounding;
 using testing::largest;
 using testing::norm;
 using testing::shaken;
 using testing::some_rotation;
-
-// Central differences of a smooth function at a step of 1e-5 mm: truncation ~ 1e-10, cancellation ~ 1e-11 of its size.
-constexpr double kStep = 1e-5;
-constexpr double kDifferenceTolerance = 1e-6;
-constexpr double kRounding = 1e-12;
 
 TissueModel one_tet(double nu = 0.45) {
   Material material{.poissons_ratio = nu};
@@ -30,7 +28,8 @@ TissueModel one_tet(double nu = 0.45) {
 }
 
 Eigen::MatrixXd force_differences(const TissueModel& model, const TissueState& start) {
-  return testing::force_differences(start, kStep, [&](TissueState& state) { return elastic_forces(model, state); });
+  return testing::force_differences(start, kDifferenceStep,
+                                    [&](TissueState& state) { return elastic_forces(model, state); });
 }
 
 TEST(ElasticForce, PushesAMirroredTetBackThroughItsThinnestDirection) {

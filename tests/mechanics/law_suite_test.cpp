@@ -14,15 +14,14 @@ namespace {
 
 using testing::dense;
 using testing::irregular_block;
+using testing::kDifferenceStep;
+using testing::kDifferenceTolerance;
+using testing::kRounding;
 using testing::largest;
 using testing::norm;
 using testing::plane_x;
 using testing::some_rotation;
 
-// Central differences at 1e-5 mm: truncation ~ 1e-10, cancellation ~ 1e-11 of what is differenced.
-constexpr double kStep = 1e-5;
-constexpr double kDifferenceTolerance = 1e-6;
-constexpr double kRounding = 1e-12;
 constexpr double kStepS = 0.1;
 const Vec3 kSize(20, 12, 9);
 
@@ -95,17 +94,17 @@ class EveryLaw : public ::testing::TestWithParam<LawCase> {
     for (std::size_t v = 0; v < gradient.size(); ++v) {
       for (int i = 0; i < 3; ++i) {
         const double at = state.positions[v][i];
-        state.positions[v][i] = at + kStep;
+        state.positions[v][i] = at + kDifferenceStep;
         const double above = energy(model, state);
-        state.positions[v][i] = at - kStep;
-        gradient[v][i] = (above - energy(model, state)) / (2.0 * kStep);
+        state.positions[v][i] = at - kDifferenceStep;
+        gradient[v][i] = (above - energy(model, state)) / (2.0 * kDifferenceStep);
         state.positions[v][i] = at;
       }
     }
     return gradient;
   }
   [[nodiscard]] static Eigen::MatrixXd force_differences(const TissueModel& model, const TissueState& start) {
-    return testing::force_differences(start, kStep, [&](TissueState& state) { return forces(model, state); });
+    return testing::force_differences(start, kDifferenceStep, [&](TissueState& state) { return forces(model, state); });
   }
 };
 

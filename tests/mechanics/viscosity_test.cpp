@@ -11,12 +11,12 @@ namespace incise {
 namespace {
 
 using testing::irregular_block;
+using testing::kRounding;
 using testing::largest;
 using testing::norm;
 using testing::plane_x;
 using testing::some_rotation;
 
-constexpr double kRounding = 1e-12;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 const Vec3 kSize(20, 12, 9);
 

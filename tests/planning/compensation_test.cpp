@@ -1,5 +1,6 @@
 #include "planning/bodies.hpp"
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/core/expect.hpp>
@@ -17,7 +18,6 @@ namespace {
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-const Vec3 kDown = -Vec3::UnitZ();
 
 /// A stand-in for tissue: the cut is the path displaced along the radius by a smooth function of the angle, laid on the
 /// surface.

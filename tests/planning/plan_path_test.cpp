@@ -1,5 +1,6 @@
 #include "planning/bodies.hpp"
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
@@ -20,7 +21,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using testing::refusal_of;
-const Vec3 kDown = -Vec3::UnitZ();
 
 double margin_error(const ToolPath& path, double margin) {
   double worst = 0.0;

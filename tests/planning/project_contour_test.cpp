@@ -1,5 +1,6 @@
 #include "planning/bodies.hpp"
 #include "support/contour_shapes.hpp"
+#include "support/directions.hpp"
 #include "support/refusal.hpp"
 
 #include <incise/core/error.hpp>
@@ -16,7 +17,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::refusal_of;
-const Vec3 kDown = -Vec3::UnitZ();
 
 TEST(ProjectTumorEdge, LaysPointsOntoTheSurfaceAlongTheApproach) {
   const SurfaceQuery surface(testing::wedge(0.5));

@@ -3,6 +3,7 @@
 #include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
+#include <incise/core/units.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
 #include <incise/io/entry_folder.hpp>
@@ -21,12 +22,11 @@
 #include <nlohmann/json.hpp>
 
 #include <fstream>
-#include <numbers>
 
 namespace incise {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using units::kPi;
 
 /// A case of a block with 10 x 20 x 5 mm, and a folder for its results.
 class RunFolderTest : public ::testing::Test {

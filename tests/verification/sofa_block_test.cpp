@@ -81,7 +81,7 @@ void expect_field(const TissueModel& model, const Points& positions, const Point
   ::testing::Test::RecordProperty("largest_difference_mm", std::to_string(worst));
 }
 
-StaticResult solve(const TissueModel& model) {
+StaticResult solve_block(const TissueModel& model) {
   return testing::solve(model, {.relative_tolerance = 1e-11});
 }
 
@@ -93,7 +93,7 @@ TEST(SofaBlock, StretchOf20MmAgreesToThePrintedDigits) {
       make_tissue_model(reference.mesh, sofa_material(),
                         {FixedConstraint{plane_x(0.0)}, DisplacedConstraint{plane_x(100.0), Vec3(20, 0, 0)},
                          FixedConstraint{underside, {false, false, true}}});
-  const StaticResult result = solve(model);
+  const StaticResult result = solve_block(model);
   ASSERT_EQ(result.outcome, Outcome::Success);
   expect_field(model, result.state.positions, reference.fields.at("u_stretch_polarF"), kPrintedDigitsMm);
   EXPECT_NEAR(result.reactions_mn[1][0], 28861.0, 0.5);
@@ -104,7 +104,7 @@ TEST(SofaBlock, CantileverAgreesToThePrintedDigits) {
   const Reference reference = read_reference();
   const TissueModel model =
       make_tissue_model(reference.mesh, sofa_material(), {FixedConstraint{plane_x(0.0)}}, Vec3(0, 0, -9810));
-  const StaticResult result = solve(model);
+  const StaticResult result = solve_block(model);
   ASSERT_EQ(result.outcome, Outcome::Success);
   expect_field(model, result.state.positions, reference.fields.at("u_cantilever_polarF"), kPrintedDigitsMm);
 }
@@ -219,7 +219,7 @@ TEST(SofaBlock, SofasLargeRotationDependsOnTheOrderOfCornersAndOursDoesNot) {
   EXPECT_LT(change(SofaRotation::PolarF), 1e-8);
 
   const auto ours = [](const TetMesh& body) {
-    return solve(make_tissue_model(body, sofa_material(), {FixedConstraint{plane_x(0.0)}}, Vec3(0, 0, -9810)))
+    return solve_block(make_tissue_model(body, sofa_material(), {FixedConstraint{plane_x(0.0)}}, Vec3(0, 0, -9810)))
         .state.positions;
   };
   EXPECT_LT(testing::largest_distance(ours(mesh), ours(reordered(mesh))), 1e-8);

@@ -23,7 +23,7 @@ Specimen seen_specimen() {
   return specimen;
 }
 
-const BenchBody& body() {
+const BenchBody& seen_body() {
   static const BenchBody made = [] {
     BenchBody copy = test::middle_body();
     copy.specimen = seen_specimen();
@@ -34,14 +34,14 @@ const BenchBody& body() {
 const Readings& readings() {
   static const Readings made = [] {
     Monitor monitor;
-    return take_readings(body(), true, monitor);
+    return take_readings(seen_body(), true, monitor);
   }();
   return made;
 }
 
 // Every test makes the body anew where each runs in a process of its own: few tests, more in each.
 void expect_cloud_on_the_stretched_skin() {
-  const SurfaceQuery skin(skin_at(body(), body().stretched.positions));
+  const SurfaceQuery skin(skin_at(seen_body(), seen_body().stretched.positions));
   const Mat4 T_specimen_camera = T_robot_specimen(placement_of(seen_specimen())).inverse() * readings().T_robot_camera;
   ASSERT_GT(readings().cloud_mm.size(), 2000U);
   double squares = 0.0;
@@ -58,8 +58,8 @@ void expect_cloud_on_the_stretched_skin() {
 }
 
 void expect_force_within_the_load_cells_noise() {
-  EXPECT_NE(readings().stretch_force_n, body().stretch_force_n);
-  EXPECT_NEAR(readings().stretch_force_n, body().stretch_force_n, 0.2 * body().stretch_force_n);
+  EXPECT_NE(readings().stretch_force_n, seen_body().stretch_force_n);
+  EXPECT_NEAR(readings().stretch_force_n, seen_body().stretch_force_n, 0.2 * seen_body().stretch_force_n);
 }
 
 void expect_holes_of_their_share() {
@@ -80,7 +80,7 @@ void expect_green_mark_on_the_tumours_edge() {
   FrameShot frame = readings().frame;
   const Mat4 T_camera_specimen = readings().T_robot_camera.inverse() * T_robot_specimen(placement_of(seen_specimen()));
   int green = 0;
-  const Contour edge = tumor_edge_at(body(), body().stretched.positions);
+  const Contour edge = tumor_edge_at(seen_body(), seen_body().stretched.positions);
   for (const Vec3& p : edge.points) {
     const Vec3 q = (T_camera_specimen * p.homogeneous()).head<3>();
     const int u = static_cast<int>(std::lround(frame.camera.cx + frame.camera.focal_px * q.x() / q.z()));

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <incise/geometry/types.hpp>
+
+namespace incise {
+
+/// The approach of a test's tool: straight down.
+inline const Vec3 kDown = -Vec3::UnitZ();
+
+}  // namespace incise
