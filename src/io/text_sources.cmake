@@ -1,4 +1,4 @@
-# Files made of text or plain bytes: everything but volumes. XML is parsed by pugixml, compressed by zlib; both stay private.
+# Files made of text or plain bytes: everything but volumes. XML is parsed by pugixml, compressed by libdeflate; both stay private.
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
 set(text_sources
@@ -37,4 +37,4 @@ set(text_sources
   vtk_xml_reader.cpp
   vtk_xml_writer.cpp
   specimen_id.cpp)
-set(text_libraries pugixml::pugixml ZLIB::ZLIB PNG::PNG JPEG::JPEG TIFF::TIFF)
+set(text_libraries pugixml::pugixml incise_deflate ZLIB::ZLIB PNG::PNG JPEG::JPEG TIFF::TIFF)

@@ -3,19 +3,35 @@
 #include <incise/core/error.hpp>
 #include <incise/io/text_encoding.hpp>
 
-#include <zlib.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstring>
+#include <memory>
+#include <new>
 
 namespace incise::io_detail {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "written for little endian machines");
 
-constexpr int kCompressionLevel = 3;  // fast; level 6 saves a further few percent on meshes
+// The fastest. Of a frame of 24 MB it takes 0.09 s, level 6 0.24 s for 1 % less; zlib's level 3 takes 0.42 s for 7 %
+// less.
+constexpr int kCompressionLevel = 1;
+
+struct FreeCodec {
+  void operator()(libdeflate_compressor* codec) const { libdeflate_free_compressor(codec); }
+  void operator()(libdeflate_decompressor* codec) const { libdeflate_free_decompressor(codec); }
+};
+
+/// @throws std::bad_alloc if there is none: libdeflate allocates nothing else.
+template <class Codec>
+std::unique_ptr<Codec, FreeCodec> owned(Codec* codec) {
+  if (codec == nullptr) throw std::bad_alloc();
+  return std::unique_ptr<Codec, FreeCodec>(codec);
+}
 
 constexpr std::array<int, 256> digit_values() {
   std::array<int, 256> values{};
@@ -99,22 +115,18 @@ std::vector<double> numbers_from_bytes(std::string bytes, std::string_view type,
 }
 
 std::optional<std::string> inflated(std::string_view bytes, std::size_t size) {
+  const auto codec = owned(libdeflate_alloc_decompressor());
   std::string result(size, '\0');
-  uLongf length = static_cast<uLongf>(size);
-  const int status = uncompress(reinterpret_cast<Bytef*>(result.data()), &length,
-                                reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()));
-  if (status != Z_OK || length != size) return std::nullopt;
+  const libdeflate_result found =
+      libdeflate_zlib_decompress(codec.get(), bytes.data(), bytes.size(), result.data(), size, nullptr);
+  if (found != LIBDEFLATE_SUCCESS) return std::nullopt;
   return result;
 }
 
 std::string deflated(std::string_view bytes) {
-  uLongf length = compressBound(static_cast<uLong>(bytes.size()));
-  std::string result(length, '\0');
-  const int status =
-      compress2(reinterpret_cast<Bytef*>(result.data()), &length, reinterpret_cast<const Bytef*>(bytes.data()),
-                static_cast<uLong>(bytes.size()), kCompressionLevel);
-  if (status != Z_OK) throw Error("zlib could not compress");
-  result.resize(length);
+  const auto codec = owned(libdeflate_alloc_compressor(kCompressionLevel));
+  std::string result(libdeflate_zlib_compress_bound(codec.get(), bytes.size()), '\0');
+  result.resize(libdeflate_zlib_compress(codec.get(), bytes.data(), bytes.size(), result.data(), result.size()));
   return result;
 }
 
