@@ -1,4 +1,5 @@
 #include <incise/core/error.hpp>
+#include <incise/core/workers.hpp>
 #include <incise/cutting/divided_mesh.hpp>
 #include <incise/io/atomic_file.hpp>
 #include <incise/io/contour_io.hpp>
@@ -19,6 +20,8 @@
 
 namespace incise {
 namespace {
+
+constexpr int kMostWriters = 4;
 
 /// A cut's tissue for pictures.
 struct CutTissue {
@@ -164,18 +167,22 @@ void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog
   });
 }
 
-/// Writes the frames as a ParaView time series, and the tool's poses at their times as JSON.
-void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, const std::vector<CutFrame>& frames) {
+/// Writes the frames as a ParaView time series, and the tool's poses at their times as JSON. At most kMostWriters
+/// frames are in memory at once, of some 500 bytes a tet each.
+void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, const std::vector<CutFrame>& frames,
+                  int threads) {
   if (frames.empty()) return;
   make_folder(folder / "frames");
   if (tissue.is_divided()) write_vtu(folder / kUncutFile, uncut_mesh(tissue));
+  const auto name_of = [](std::size_t i) { return fmt::format("frames/frame_{:04}.vtu", i); };
+  Workers workers(std::clamp(threads, 1, kMostWriters));
+  workers.for_each(frames.size(), 1,
+                   [&](std::size_t i) { write_vtu(folder / name_of(i), live_mesh(tissue, frames[i])); });
   std::vector<PvdFrame> series;
   nlohmann::ordered_json tools = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const CutFrame& frame = frames[i];
-    const std::string name = fmt::format("frames/frame_{:04}.vtu", i);
-    write_vtu(folder / name, live_mesh(tissue, frame));
-    series.push_back({frame.time_s, name});
+    series.push_back({frame.time_s, name_of(i)});
     tools.push_back({{"time_s", frame.time_s},
                      {"is_tool_in", frame.is_tool_in},
                      {"tip_mm", to_json(frame.tool.tip_mm)},
@@ -232,7 +239,7 @@ void RunFolder::cut(const ProductNote& note, const TissueModel& model, const Sta
     const TetMesh removed = removed_mesh(tissue, incision.steps);
     if (!removed.tets.empty()) write_vtu(to / "removed.vtu", removed);
     write_kerf_files(to, incision.kerf);
-    write_frames(to, tissue, incision.frames);
+    write_frames(to, tissue, incision.frames, context_.threads);
   });
 }
 
