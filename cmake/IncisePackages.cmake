@@ -43,7 +43,7 @@ if(NOT TARGET incise_rsvg)
   target_include_directories(incise_rsvg SYSTEM INTERFACE ${RSVG_INCLUDE_DIRS})
   target_link_libraries(incise_rsvg INTERFACE ${RSVG_LINK_LIBRARIES})
 endif()
-# So does libdeflate in Debian 12. It packs and unpacks the arrays of VTK files, in io.
+# libdeflate, too, has a pkg-config file only (Debian 12). It packs and unpacks the arrays of VTK files, in io.
 pkg_check_modules(DEFLATE REQUIRED libdeflate>=1.14)
 if(NOT TARGET incise_deflate)
   add_library(incise_deflate INTERFACE IMPORTED GLOBAL)

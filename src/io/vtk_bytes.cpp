@@ -17,8 +17,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "written for little endian machines");
 
-// The fastest. Of a frame of 24 MB it takes 0.09 s, level 6 0.24 s for 1 % less; zlib's level 3 takes 0.42 s for 7 %
-// less.
+// The fastest. Compressing a frame of 24 MB takes 0.09 s; level 6 takes 0.24 s for 1 % fewer bytes, zlib's level 3 0.42
+// s for 7 % fewer.
 constexpr int kCompressionLevel = 1;
 
 struct FreeCodec {
@@ -127,6 +127,7 @@ std::string deflated(std::string_view bytes) {
   const auto codec = owned(libdeflate_alloc_compressor(kCompressionLevel));
   std::string result(libdeflate_zlib_compress_bound(codec.get(), bytes.size()), '\0');
   result.resize(libdeflate_zlib_compress(codec.get(), bytes.data(), bytes.size(), result.data(), result.size()));
+  if (result.empty()) throw Error("libdeflate could not compress");
   return result;
 }
 

@@ -11,7 +11,7 @@ struct SegmentPlace {
   double share = 0.0;  ///< of the way from its begin to its end
   double distance_mm = 0.0;
 };
-/// Returns the place of a segment that is nearest to p; its begin if it has no length.
+/// Returns the place on a segment that is nearest to p; its begin if it has no length.
 [[nodiscard]] SegmentPlace nearest_on_segment(const Vec3& p, const Vec3& begin, const Vec3& end);
 
 /// A place on the tip's course.

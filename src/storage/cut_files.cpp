@@ -168,14 +168,14 @@ void write_steps(const std::filesystem::path& file, const std::vector<CutStepLog
 }
 
 /// Writes the frames as a ParaView time series, and the tool's poses at their times as JSON. At most kMostWriters
-/// frames are in memory at once, of some 500 bytes a tet each.
+/// meshes are made at once, of some 500 bytes a tet each.
 void write_frames(const std::filesystem::path& folder, const CutTissue& tissue, const std::vector<CutFrame>& frames,
                   int threads) {
   if (frames.empty()) return;
   make_folder(folder / "frames");
   if (tissue.is_divided()) write_vtu(folder / kUncutFile, uncut_mesh(tissue));
   const auto name_of = [](std::size_t i) { return fmt::format("frames/frame_{:04}.vtu", i); };
-  Workers workers(std::clamp(threads, 1, kMostWriters));
+  Workers workers(std::clamp(threads, 1, std::min(kMostWriters, static_cast<int>(frames.size()))));
   workers.for_each(frames.size(), 1,
                    [&](std::size_t i) { write_vtu(folder / name_of(i), live_mesh(tissue, frames[i])); });
   std::vector<PvdFrame> series;

@@ -13,7 +13,7 @@ def ids(verdict, severity=None):
 
 class VerdictTest(SharedStart, CommandTest):
     def write(self, changes=small_case.SOUND):
-        """Corrects by one pass, the fewest cuts, unless `changes` name another method."""
+        """Writes a case that corrects by one pass, the fewest cuts, unless `changes` name another method."""
         case = small_case.write_case(self.folder / "case", small_case.merged({"compensation": {"method": "paper"}}, changes))
         small_case.write_tumor_surface(case / "tumor.stl")
         return case

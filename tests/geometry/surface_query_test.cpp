@@ -13,7 +13,7 @@
 namespace incise {
 namespace {
 
-constexpr double kRounding = 1e-9;
+constexpr double kQueryTolerance = 1e-9;
 
 TriMesh block_surface() {
   return boundary_surface(make_block({4, 3, 2}, {4, 3, 2}));
@@ -72,10 +72,10 @@ TEST(SelfCrossing, AgreesWithTheCutOfTwoTrianglesByTheirPlanes) {
 TEST(SurfaceQuery, FindsTheNearestPointOfABlock) {
   const SurfaceQuery query(block_surface());
   const SurfacePoint point = query.nearest({1.3, 1.1, 5.0});
-  EXPECT_LT((point.position_mm - Vec3(1.3, 1.1, 2.0)).norm(), kRounding);
-  EXPECT_NEAR(point.distance_mm, 3.0, kRounding);
-  EXPECT_LT((point.normal - Vec3::UnitZ()).norm(), kRounding);
-  EXPECT_NEAR(point.barycentric.sum(), 1.0, kRounding);
+  EXPECT_LT((point.position_mm - Vec3(1.3, 1.1, 2.0)).norm(), kQueryTolerance);
+  EXPECT_NEAR(point.distance_mm, 3.0, kQueryTolerance);
+  EXPECT_LT((point.normal - Vec3::UnitZ()).norm(), kQueryTolerance);
+  EXPECT_NEAR(point.barycentric.sum(), 1.0, kQueryTolerance);
 }
 
 TEST(SurfaceQuery, AgreesWithTheDistanceToABoxEverywhere) {
@@ -84,8 +84,8 @@ TEST(SurfaceQuery, AgreesWithTheDistanceToABoxEverywhere) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p = random_point(random, 6.0);
     const SurfacePoint point = query.nearest(p);
-    ASSERT_NEAR(point.distance_mm, distance_to_box_surface(p, {4, 3, 2}), kRounding);
-    ASSERT_NEAR((point.position_mm - p).norm(), point.distance_mm, kRounding);
+    ASSERT_NEAR(point.distance_mm, distance_to_box_surface(p, {4, 3, 2}), kQueryTolerance);
+    ASSERT_NEAR((point.position_mm - p).norm(), point.distance_mm, kQueryTolerance);
   }
 }
 
@@ -93,10 +93,10 @@ TEST(SurfaceQuery, FirstHitStopsAtTheNearWallAndAtTheLimit) {
   const SurfaceQuery query(block_surface());
   const auto hit = query.first_hit({1.2, 1.3, 10.0}, kDown);
   ASSERT_TRUE(hit);
-  EXPECT_NEAR(hit->distance_mm, 8.0, kRounding);
+  EXPECT_NEAR(hit->distance_mm, 8.0, kQueryTolerance);
   EXPECT_FALSE(query.first_hit({1.2, 1.3, 10.0}, kDown, 7.9));
   EXPECT_FALSE(query.first_hit({1.2, 1.3, 10.0}, -kDown));
-  EXPECT_NEAR(query.first_hit({1.2, 1.3, 1.0}, kDown)->distance_mm, 1.0, kRounding) << "from within";
+  EXPECT_NEAR(query.first_hit({1.2, 1.3, 1.0}, kDown)->distance_mm, 1.0, kQueryTolerance) << "from within";
 }
 
 TEST(SurfaceQuery, RaysThroughEdgesAndVerticesHit) {
@@ -106,7 +106,7 @@ TEST(SurfaceQuery, RaysThroughEdgesAndVerticesHit) {
     for (int j = 1; j < 12; ++j) {
       const auto hit = query.first_hit({0.25 * i, 0.25 * j, 9.0}, kDown);
       ASSERT_TRUE(hit) << i << " " << j;
-      EXPECT_NEAR(hit->distance_mm, 7.0, kRounding);
+      EXPECT_NEAR(hit->distance_mm, 7.0, kQueryTolerance);
     }
   }
   EXPECT_TRUE(query.first_hit({0, 0, 9}, kDown)) << "along the vertical edge of the block";
@@ -143,10 +143,11 @@ TEST(SeenAt, TakesTheOutermostSurfaceAndTheHeightAboveIt) {
   const SurfaceQuery query(surface);
   const auto below = query.seen_at({1.1, 1.2, 0.5}, kDown);
   ASSERT_TRUE(below);
-  EXPECT_NEAR(below->position_mm.z(), 12.0, kRounding);
-  EXPECT_NEAR(below->distance_mm, -11.5, kRounding);
-  EXPECT_NEAR(query.seen_at({1.1, 1.2, 40.0}, 3.0 * kDown)->distance_mm, 28.0, kRounding) << "approach of any length";
-  EXPECT_NEAR(query.seen_at({1.1, 1.2, 40.0}, -kDown)->position_mm.z(), 0.0, kRounding) << "seen from below";
+  EXPECT_NEAR(below->position_mm.z(), 12.0, kQueryTolerance);
+  EXPECT_NEAR(below->distance_mm, -11.5, kQueryTolerance);
+  EXPECT_NEAR(query.seen_at({1.1, 1.2, 40.0}, 3.0 * kDown)->distance_mm, 28.0, kQueryTolerance)
+      << "approach of any length";
+  EXPECT_NEAR(query.seen_at({1.1, 1.2, 40.0}, -kDown)->position_mm.z(), 0.0, kQueryTolerance) << "seen from below";
   EXPECT_FALSE(query.seen_at({-1.0, 1.2, 0.5}, kDown));
 }
 
@@ -165,7 +166,7 @@ TEST(SurfaceQuery, TakesATriangleWithoutAreaAsItsEdges) {
   surface.vertices = {{0, 0, 0}, {4, 0, 0}, {2, 0, 0}};
   surface.triangles = {{VertexId{std::size_t{0}}, VertexId{std::size_t{1}}, VertexId{std::size_t{2}}}};
   const SurfacePoint point = SurfaceQuery(surface).nearest({3, 4, 0});
-  EXPECT_NEAR(point.distance_mm, 4.0, kRounding);
+  EXPECT_NEAR(point.distance_mm, 4.0, kQueryTolerance);
   EXPECT_TRUE(point.normal.allFinite());
 }
 
@@ -177,7 +178,7 @@ TEST(TetLocator, FindsATetThatContainsThePoint) {
     const Vec3 p(random.uniform(0, 4), random.uniform(0, 3), random.uniform(0, 2));
     const auto found = locator.locate(p);
     ASSERT_TRUE(found);
-    EXPECT_LT((position_of(*found, mesh, mesh.vertices) - p).norm(), kRounding);
+    EXPECT_LT((position_of(*found, mesh, mesh.vertices) - p).norm(), kQueryTolerance);
     EXPECT_GE(*std::min_element(found->barycentric.begin(), found->barycentric.end()), -1e-9);
   }
   for (const Vec3& p : mesh.vertices) EXPECT_TRUE(locator.locate(p, 0.0)) << "vertices are inside";
@@ -189,7 +190,7 @@ TEST(TetLocator, ExtrapolatesJustOutsideAndRefusesBeyondTheTolerance) {
   const Vec3 above(1.3, 1.4, 2.3);
   const auto found = locator.locate(above, 0.31);
   ASSERT_TRUE(found);
-  EXPECT_LT((position_of(*found, mesh, mesh.vertices) - above).norm(), kRounding);
+  EXPECT_LT((position_of(*found, mesh, mesh.vertices) - above).norm(), kQueryTolerance);
   EXPECT_FALSE(locator.locate(above, 0.29));
 }
 
@@ -205,7 +206,7 @@ TEST(TetLocator, PointsFollowAnAffineMotionOfTheMeshExactly) {
     const Vec3 p(random.uniform(-0.2, 4.2), random.uniform(-0.2, 3.2), random.uniform(-0.2, 2.2));
     const auto found = locator.locate(p);
     ASSERT_TRUE(found);
-    EXPECT_LT((position_of(*found, mesh, moved) - stretch * p - Vec3(1, 2, 3)).norm(), kRounding);
+    EXPECT_LT((position_of(*found, mesh, moved) - stretch * p - Vec3(1, 2, 3)).norm(), kQueryTolerance);
   }
 }
 

@@ -5,6 +5,6 @@
 namespace incise {
 
 /// The approach of a test's tool: straight down.
-inline const Vec3 kDown = -Vec3::UnitZ();
+inline const Vec3 kDown(0, 0, -1);
 
 }  // namespace incise

@@ -18,7 +18,7 @@ namespace incise {
 struct RunContext {
   std::string command;  ///< the command line
   std::uint64_t seed = 0;
-  int threads = 1;
+  int threads = 1;  ///< of the run; at most four of them write a cut's frames
 };
 
 /// The folder of a run. It reads inputs from the case's files, keeps results in a cache, and writes each product into a
