@@ -21,7 +21,7 @@
 namespace incise {
 namespace {
 
-constexpr int kMostWriters = 4;
+constexpr int kMostWriters = 4;  // threads that write frames; each has one mesh in memory
 
 /// A cut's tissue for pictures.
 struct CutTissue {
