@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -18,6 +19,8 @@ namespace incise {
 /// its cache. When its range is done, it helps with the other ranges. The caller waits for chunks, not for threads: a
 /// thread that wakes late finds nothing to do.
 struct Workers::Shared {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
   /// The next chunk of a range and the loop that it belongs to: (loop << 32) + chunk. Has a cache line to itself.
   struct alignas(64) Ticket {
     std::atomic<std::uint64_t> value = 0;
@@ -50,9 +53,9 @@ struct Workers::Shared {
   std::size_t chunk_size = 1;
   std::atomic<std::size_t> chunks = 0;
 
-  std::mutex mutex;  // guards the two below
+  std::mutex mutex;  // guards `failure` and what is written to `failed_chunk`
   std::exception_ptr failure;
-  std::size_t failed_chunk = 0;
+  std::atomic<std::size_t> failed_chunk = kNone;  // the lowest; chunks above it are not run any more
 
   [[nodiscard]] std::size_t range_start(std::size_t range) const { return range * chunks.load() / tickets.size(); }
 
@@ -70,10 +73,10 @@ struct Workers::Shared {
   void run(std::size_t chunk) {
     const std::size_t begin = chunk * chunk_size;
     try {
-      (*body)(chunk, begin, std::min(count, begin + chunk_size));
+      if (chunk < failed_chunk.load()) (*body)(chunk, begin, std::min(count, begin + chunk_size));
     } catch (...) {
       const std::lock_guard lock(mutex);
-      if (!failure || chunk < failed_chunk) {
+      if (chunk < failed_chunk.load()) {
         failure = std::current_exception();
         failed_chunk = chunk;
       }
@@ -142,6 +145,7 @@ void Workers::for_chunks(std::size_t count, std::size_t chunk_size,
   shared.chunks = chunks;
   shared.chunks_left = static_cast<std::uint32_t>(chunks);
   shared.failure = nullptr;
+  shared.failed_chunk = Shared::kNone;
   for (std::size_t range = 0; range < shared.tickets.size(); ++range) {
     shared.tickets[range].value = (static_cast<std::uint64_t>(loop) << 32) + shared.range_start(range);
   }

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -81,9 +83,26 @@ TEST_P(WorkersWith, VisitEveryItemOnceInLoopsOfAnySizeThatFollowEachOther) {
     } else {
       ASSERT_NO_THROW(run()) << "loop " << loop;
     }
-    if (must_throw && GetParam() == 1) continue;  // one thread stops at the exception
-    for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(visits[i], 1) << "item " << i << " of loop " << loop;
+    const std::size_t sure =
+        must_throw ? std::min(count, (bad + 1) * chunk_size) : count;  // beyond it, some are left out
+    for (std::size_t i = 0; i < sure; ++i) ASSERT_EQ(visits[i], 1) << "item " << i << " of loop " << loop;
+    for (std::size_t i = sure; i < count; ++i) ASSERT_LE(visits[i], 1) << "item " << i << " of loop " << loop;
   }
+}
+
+TEST_P(WorkersWith, StopAfterAFailure) {
+  Workers workers(GetParam());
+  constexpr std::size_t kLoops = 50;
+  constexpr std::size_t kChunks = 10000;
+  std::atomic<std::size_t> calls = 0;
+  for (std::size_t loop = 0; loop < kLoops; ++loop) {
+    const auto body = [&](std::size_t i) {
+      ++calls;
+      if (i == 0) throw Error("asked for");
+    };
+    ASSERT_THROW(workers.for_each(kChunks, 1, body), Error);
+  }
+  EXPECT_LT(calls, kLoops * kChunks);
 }
 
 INSTANTIATE_TEST_SUITE_P(Threads, WorkersWith, ::testing::Values(1, 2, 4, 6),
