@@ -198,8 +198,7 @@ LinePlot plot_of(const std::vector<Size>& sizes) {
   const auto add = [&](const std::string& name, auto value) {
     LineSeries series{name, {}, {}, true};
     for (const Size& size : sizes) {
-      series.x.push_back(size.tets);
-      series.y.push_back(value(size) / value(sizes.front()));
+      series.add(size.tets, value(size) / value(sizes.front()));
     }
     plot.series.push_back(std::move(series));
   };

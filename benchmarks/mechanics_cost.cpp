@@ -142,10 +142,8 @@ std::string figure_of(const std::vector<Row>& stretches, double slope) {
   LineSeries linear{"proportional to the body", {}, {}, true};
   for (const Row& row : stretches) {
     const auto tets = static_cast<double>(row.tets);
-    measured.x.push_back(tets);
-    measured.y.push_back(row.wall_s);
-    linear.x.push_back(tets);
-    linear.y.push_back(stretches.back().wall_s * tets / static_cast<double>(stretches.back().tets));
+    measured.add(tets, row.wall_s);
+    linear.add(tets, stretches.back().wall_s * tets / static_cast<double>(stretches.back().tets));
   }
   plot.series = {measured, linear};
   return line_plot_svg(plot);

@@ -43,15 +43,6 @@ void print_table(const std::vector<VerificationCheck>& checks) {
   }
 }
 
-void write_figure(const std::filesystem::path& folder, const VerificationCheck& check) {
-  if (check.plot.curves.empty()) return;
-  LinePlot plot{check.plot.title, check.plot.x_label, check.plot.y_label, check.plot.is_log_x, check.plot.is_log_y, {}};
-  for (const CheckCurve& curve : check.plot.curves)
-    plot.series.push_back({curve.name, curve.x, curve.y, curve.is_reference});
-  const std::string svg = line_plot_svg(plot);
-  write_atomically(folder / (check.name + ".svg"), svg);
-}
-
 int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
   require_a_check(arguments.settings.only);
   if (!options.output.empty()) require_writable(options.output);
@@ -60,7 +51,10 @@ int run_verify(const VerifyArguments& arguments, const CommonOptions& options) {
   Workers workers(options.context().threads);
   const std::vector<VerificationCheck> checks = run_checks(arguments.settings, workers, console);
   if (!arguments.figures.empty()) {
-    for (const VerificationCheck& check : checks) write_figure(arguments.figures, check);
+    for (const VerificationCheck& check : checks) {
+      if (!check.plot.series.empty())
+        write_atomically(arguments.figures / (check.name + ".svg"), line_plot_svg(check.plot));
+    }
   }
   const auto passed = std::ranges::count(checks, true, &VerificationCheck::passed);
   const bool is_passed = static_cast<std::size_t>(passed) == checks.size();

@@ -168,8 +168,7 @@ LinePlot roc_plot(const AdviceJson& advice) {
   const auto add = [&plot](std::string name, const AdviceJson& points) {
     LineSeries series{std::move(name), {}, {}, true};
     for (const AdviceJson& point : points) {
-      series.x.push_back(point.at(0).get<double>());
-      series.y.push_back(point.at(1).get<double>());
+      series.add(point.at(0).get<double>(), point.at(1).get<double>());
     }
     plot.series.push_back(std::move(series));
   };
@@ -185,8 +184,7 @@ LinePlot reliability_plot(const AdviceJson& margin) {
   LineSeries seen{"seen, with 95 % interval", {}, {}, false};
   std::string counts;
   for (const AdviceJson& bin : margin.at("bins")) {
-    seen.x.push_back(bin.at("stated").get<double>());
-    seen.y.push_back(bin.at("seen").get<double>());
+    seen.add(bin.at("stated").get<double>(), bin.at("seen").get<double>());
     seen.low.push_back(bin.at("low").get<double>());
     seen.high.push_back(bin.at("high").get<double>());
     counts += fmt::format("{}{} of {}", counts.empty() ? "" : ", ", bin.at("happened").get<std::size_t>(),

@@ -260,10 +260,8 @@ LinePlot learning_plot(const std::vector<LearningPoint>& curve, double all) {
   LineSeries without{"forecast without simulation", {}, {}, true}, with{"with simulation", {}, {}, true};
   for (const LearningPoint& point : curve) {
     const double photographs = point.photographs ? static_cast<double>(*point.photographs) : all;
-    without.x.push_back(photographs);
-    without.y.push_back(*point.pair.first_mm);
-    with.x.push_back(photographs);
-    with.y.push_back(*point.pair.second_mm);
+    without.add(photographs, *point.pair.first_mm);
+    with.add(photographs, *point.pair.second_mm);
   }
   plot.series = {std::move(without), std::move(with)};
   return plot;

@@ -41,15 +41,13 @@ bool write_plot(const std::filesystem::path& folder, const MeasurePlot& what, co
   for (const PowerCut& cut : cuts) {
     const std::optional<double>& y = cut.*what.y;
     if (!y) continue;
-    marks.x.push_back(cut.*what.x);
-    marks.y.push_back(*y);
+    marks.add(cut.*what.x, *y);
     const auto [at, is_first] = greatest.emplace(cut.*what.x, *y);
     if (!is_first) at->second = std::max(at->second, *y);
   }
   if (marks.x.empty()) return false;
   for (const auto& [x, y] : greatest) {
-    line.x.push_back(x);
-    line.y.push_back(y);
+    line.add(x, y);
   }
   const double first = greatest.begin()->first;
   const double last = greatest.rbegin()->first;

@@ -47,8 +47,7 @@ LinePlot errors_along(const std::filesystem::path& root) {
   for (const Point& point : points) {
     if (point.pass != last) plot.series.push_back({name_of_pass(static_cast<std::size_t>(point.pass)), {}, {}, true});
     last = point.pass;
-    plot.series.back().x.push_back(point.along);
-    plot.series.back().y.push_back(point.error);
+    plot.series.back().add(point.along, point.error);
   }
   return plot;
 }
@@ -61,10 +60,8 @@ LinePlot convergence(const Json& record) {
   const Json& history = record.at("history");
   for (std::size_t k = 0; k < history.size(); ++k) {
     if (history[k].at("mean_abs_error_mm").is_null()) continue;
-    mean.x.push_back(static_cast<double>(k));
-    mean.y.push_back(history[k].at("mean_abs_error_mm"));
-    smooth.x.push_back(static_cast<double>(k));
-    smooth.y.push_back(history[k].at("smooth_error_mm"));
+    mean.add(static_cast<double>(k), history[k].at("mean_abs_error_mm"));
+    smooth.add(static_cast<double>(k), history[k].at("smooth_error_mm"));
   }
   plot.series = {mean, smooth};
   if (record.at("floor_mm").is_number()) {

@@ -30,7 +30,7 @@ double computed_tip_mm(const CheckContext& context, int n) {
 struct Refinement {
   double expected = 0.0;
   std::vector<double> tips;
-  CheckCurve errors{"tip displacement", {}, {}, false};
+  LineSeries errors{"tip displacement", {}, {}, false};
 };
 
 Refinement refine(const CheckContext& context) {
@@ -43,7 +43,7 @@ Refinement refine(const CheckContext& context) {
   return result;
 }
 
-void finish(VerificationCheck& check, const CheckCurve& errors) {
+void finish(VerificationCheck& check, const LineSeries& errors) {
   check.note = errors_text(errors, "cells");
   check.plot = {"Cantilever against Timoshenko's beam",
                 "cells over the height",

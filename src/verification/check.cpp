@@ -54,13 +54,13 @@ VerificationCheck described(std::string what, std::string source, std::string un
           .tolerance = tolerance};
 }
 
-CheckCurve line_of_order(const CheckCurve& errors, double order, std::string name) {
-  CheckCurve line{std::move(name), {}, {}, true};
+LineSeries line_of_order(const LineSeries& errors, double order, std::string name) {
+  LineSeries line{std::move(name), {}, {}, true};
   for (const double n : errors.x) line.add(n, errors.y[0] * std::pow(errors.x[0] / n, order));
   return line;
 }
 
-std::string errors_text(const CheckCurve& errors, const char* cells) {
+std::string errors_text(const LineSeries& errors, const char* cells) {
   std::string text;
   for (std::size_t i = 0; i < errors.x.size(); ++i) {
     text += fmt::format("{}{:.0f} {}: {:.2f} % off", i > 0 ? ", " : "", errors.x[i], cells, 100.0 * errors.y[i]);

@@ -45,10 +45,10 @@ void require_small_error(double relative_error, double bound);
                                           double tolerance);
 
 /// Returns the line y = y_0 (x_0 / x)^order through the first point of a curve: errors that shrink with this order.
-[[nodiscard]] CheckCurve line_of_order(const CheckCurve& errors, double order, std::string name);
+[[nodiscard]] LineSeries line_of_order(const LineSeries& errors, double order, std::string name);
 
 /// Returns "4 cells: 1.23 % off, 8 cells: …" for relative errors on meshes of x cells.
-[[nodiscard]] std::string errors_text(const CheckCurve& errors, const char* cells);
+[[nodiscard]] std::string errors_text(const LineSeries& errors, const char* cells);
 
 /// Returns the vertical displacement, mm, of the middle of the right edge of Cook's panel in plane strain under a small
 /// shear, computed with one layer of n x n cells of tets.

@@ -51,14 +51,14 @@ VerificationCheck cooks_membrane_rate(const CheckContext& context) {
   // On meshes as coarse as these the smooth part of the error, of order 2, still outweighs the corner's.
   check.criterion = Criterion::AtLeast;
   const double expected = panel_reference_tip_mm(material);
-  CheckCurve marks{"tip displacement", {}, {}, false};
+  LineSeries marks{"tip displacement", {}, {}, false};
   for (const int n : kPanelCells) {
     marks.add(n, std::abs(1.0 - panel_tip_of_tets_mm(context, material, n) / expected));
   }
   check.note = errors_text(marks, "cells");
   check.found = observed_rate(marks.y[marks.y.size() - 2], marks.y.back());
   const std::string name = fmt::format("order {:.2f}, the least to be seen", 2.0 * exponent);
-  const CheckCurve slope = line_of_order(marks, 2.0 * exponent, name);
+  const LineSeries slope = line_of_order(marks, 2.0 * exponent, name);
   check.plot = {"Cook's membrane", "cells each way", "relative error of the tip", true, true, {slope, marks}};
   return check;
 }

@@ -33,7 +33,7 @@ PlaneBeam beam_per_width() {
 
 struct Bent {
   Vec3 tip;         // displacement, mm
-  CheckCurve line;  // centre line, in lengths
+  LineSeries line;  // centre line, in lengths
 };
 
 /// Returns the body laid along the beam's bent line, sections across it. Newton starts from this state, because from
@@ -80,7 +80,7 @@ VerificationCheck elastica_tip(const CheckContext& context) {
       "Slender beam bent far by a tip force, F L²/EI = 3, ν = 0: drop of the tip, extrapolated at second order",
       "elastica (Bisshopp and Drucker 1945) with shear and stretch (Reissner 1972), integrated along the arc",
       "of the length", -line.back()[1] / kStripLength, kDropTolerance);
-  CheckCurve reference{"elastica", {}, {}, true};
+  LineSeries reference{"elastica", {}, {}, true};
   for (std::size_t i = 0; i < line.size(); i += 8) {
     reference.add(line[i][0] / kStripLength, line[i][1] / kStripLength);
   }
@@ -92,7 +92,7 @@ VerificationCheck elastica_tip(const CheckContext& context) {
     drops.push_back(-bent.tip[2] / kStripLength);
     errors.push_back(drops.back() - check.expected);
     check.note += fmt::format("{} cells: {:.2f} % off, ", n, 100.0 * errors.back() / check.expected);
-    if (n != kStripCells[1]) check.plot.curves.push_back(bent.line);
+    if (n != kStripCells[1]) check.plot.series.push_back(bent.line);
   }
   require_small_error(errors.back() / check.expected, kFinestDropError);
   check.found = extrapolated(drops[0], drops[1], drops[2]);

@@ -26,8 +26,8 @@ double distance_from(const TissueModel& model, const TissueState& state, const V
   return worst / kBarSize.maxCoeff();
 }
 
-CheckCurve closed_form_curve(const std::function<double(double)>& stress) {
-  CheckCurve curve{"closed form", {}, {}, true};
+LineSeries closed_form_curve(const std::function<double(double)>& stress) {
+  LineSeries curve{"closed form", {}, {}, true};
   for (int i = 0; i <= 50; ++i) curve.add(0.01 * i, stress(0.01 * i));
   return curve;
 }
@@ -43,7 +43,7 @@ VerificationCheck pulled(const CheckContext& context, const Material& material, 
                                                     : "Smith, de Goes and Kim 2018, free sides by root finding",
       "of the length", 0.0, kStretchTolerance);
   const TetMesh mesh = irregular_block(kBarSize, {6, 3, 3}, 0.2, 3);
-  CheckCurve marks{"computed", {}, {}, false};
+  LineSeries marks{"computed", {}, {}, false};
   TissueState state;
   for (const double strain : kStrains) {
     const Vec3 stretches = stretches_at(strain);
@@ -58,7 +58,7 @@ VerificationCheck pulled(const CheckContext& context, const Material& material, 
     check.found = std::max(check.found, distance_from(model, state, stretches));
     marks.add(mean_displacement(model, state, plane_across(0, kBarSize[0]))[0] / kBarSize[0], stress);
   }
-  const CheckCurve line =
+  const LineSeries line =
       closed_form_curve([&](double e) { return principal_stress_kpa(material, stretches_at(e))[0]; });
   check.plot = {
       fmt::format("{}: {}", name, law_text(material)), "strain", "traction, kPa", false, false, {line, marks}};
@@ -90,7 +90,7 @@ VerificationCheck simple_shear(const CheckContext& context, const Material& mate
   TissueModel model = make_tissue_model(irregular_block(kBarSize, {6, 3, 3}, 0.2, 3), material,
                                         {FixedConstraint{plane_across(1, 0.0)}});
   const double mu = lame_parameters(material.youngs_modulus_kpa, material.poissons_ratio).mu_kpa;
-  CheckCurve marks{"mean stress from the nodal forces", {}, {}, false};
+  LineSeries marks{"mean stress from the nodal forces", {}, {}, false};
   for (const double shear : kStrains) {
     Mat3 f = Mat3::Identity();
     f(0, 1) = shear;
@@ -99,7 +99,7 @@ VerificationCheck simple_shear(const CheckContext& context, const Material& mate
     check.found = std::max(check.found, std::abs(stress(0, 1) - simple_shear_stress_kpa(material, shear)) / mu);
     marks.add(shear, stress(0, 1));
   }
-  const CheckCurve line = closed_form_curve([&](double g) { return simple_shear_stress_kpa(material, g); });
+  const LineSeries line = closed_form_curve([&](double g) { return simple_shear_stress_kpa(material, g); });
   check.plot = {"Simple shear: " + law_text(material), "shear γ", "shear stress, kPa", false, false, {line, marks}};
   return check;
 }

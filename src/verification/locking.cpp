@@ -18,15 +18,15 @@ Material nearly_incompressible(MaterialModel model, VolumeTreatment volume) {
   return {.model = model, .volume = volume, .poissons_ratio = kPoissonsRatio};
 }
 
-CheckCurve tips(const CheckContext& context, const Material& material) {
-  CheckCurve curve{material.volume == VolumeTreatment::PerTet ? "volume per tet" : "averaged", {}, {}, false};
+LineSeries tips(const CheckContext& context, const Material& material) {
+  LineSeries curve{material.volume == VolumeTreatment::PerTet ? "volume per tet" : "averaged", {}, {}, false};
   for (const int n : kMeshes) curve.add(n, 1000.0 * panel_tip_of_tets_mm(context, material, n));
   return curve;
 }
 
 /// Fills in plot and note, the same for both checks: both treatments of the volume on all meshes, and the reference.
-void draw(VerificationCheck& check, MaterialModel model, double reference_um, const CheckCurve& standard,
-          const CheckCurve& averaged) {
+void draw(VerificationCheck& check, MaterialModel model, double reference_um, const LineSeries& standard,
+          const LineSeries& averaged) {
   const double last = kMeshes.back();
   check.plot = {fmt::format("Cook's membrane at ν = 0.49, {}", law_text({.model = model})),
                 "cells each way",
@@ -49,7 +49,7 @@ VerificationCheck locking_of_the_standard_tet(const CheckContext& context, Mater
                 "tip by nine-node quadrilaterals, extrapolated", "%", kLockedPercent, 0.0);
   check.criterion = Criterion::AtLeast;
   const double reference = 1000.0 * panel_reference_tip_mm(per_tet);
-  const CheckCurve standard = tips(context, per_tet);
+  const LineSeries standard = tips(context, per_tet);
   check.found = 100.0 * std::abs(standard.y.back() / reference - 1.0);
   draw(check, model, reference, standard, tips(context, nearly_incompressible(model, VolumeTreatment::Averaged)));
   return check;
@@ -61,7 +61,7 @@ VerificationCheck no_locking_when_averaged(const CheckContext& context, Material
   VerificationCheck check = described(
       fmt::format("Cook's membrane, ν = 0.49, {}: tip displacement on the mesh that locks", law_text(averaged)),
       "tip by nine-node quadrilaterals, extrapolated", "µm", reference, kFreeShare * reference);
-  const CheckCurve curve = tips(context, averaged);
+  const LineSeries curve = tips(context, averaged);
   check.found = curve.y.back();
   draw(check, model, reference, tips(context, nearly_incompressible(model, VolumeTreatment::PerTet)), curve);
   return check;

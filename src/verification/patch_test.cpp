@@ -54,7 +54,7 @@ VerificationCheck patch_test(const CheckContext& context, const Material& materi
   TissueModel model = make_tissue_model(irregular_block(kPatchSize, {6, 4, 3}, 0.2, 5), material,
                                         {FixedConstraint{plane_across(0, 0.0)}});
   prescribe_boundary(model, gradient(1.0));
-  CheckCurve curve{"largest inner force / largest boundary force", {}, {}, false};
+  LineSeries curve{"largest inner force / largest boundary force", {}, {}, false};
   for (const double share : {0.01, 0.03, 0.1, 0.3, 1.0, 2.0}) {
     curve.add(share, inner_force_share(context, model, gradient(share)));
   }

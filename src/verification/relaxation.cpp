@@ -41,14 +41,14 @@ VerificationCheck relaxation_of_one_prony_term(const CheckContext& context) {
 
   const double scale = lame_parameters(material.youngs_modulus_kpa, material.poissons_ratio).mu_kpa * kShear;
   const auto closed_form = [](double t) { return 1.0 + kTerm.shear_share * std::exp(-t / kTerm.time_s); };
-  CheckCurve marks{"computed", {}, {}, false};
+  LineSeries marks{"computed", {}, {}, false};
   for (int step = 0; step < kSteps; ++step) {
     // The step rule places a change of strain within a step at the middle of the step.
     marks.add((step + 0.5) * kStep, shear_stress_kpa(context, model, state) / scale);
     end_viscous_step(model, state, kStep, context.workers);
     check.found = std::max(check.found, std::abs(marks.y.back() - closed_form(marks.x.back())));
   }
-  CheckCurve line{"closed form", {}, {}, true};
+  LineSeries line{"closed form", {}, {}, true};
   for (int i = 0; i <= 100; ++i) {
     const double time_s = kStep * kSteps * i / 100.0;
     line.add(time_s, closed_form(time_s));

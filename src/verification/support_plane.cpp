@@ -42,7 +42,7 @@ VerificationCheck support_penetration(const CheckContext& context) {
   VerificationCheck check =
       described("Block pressed onto a support plane with up to 20 kPa: deepest vertex behind the plane",
                 "promise of SupportPlane: at most 0.05 mm", "mm", 0.0, kPenetration);
-  CheckCurve marks{"deepest vertex", {}, {}, false};
+  LineSeries marks{"deepest vertex", {}, {}, false};
   for (const double pressure : kPressures) {
     const StaticResult result = solved(context, pressed_block(pressure));
     check.found = std::max(check.found, result.penetration_mm);
@@ -63,9 +63,9 @@ VerificationCheck support_balance(const CheckContext& context) {
       "load, as 1 plus the largest component of the difference",
       "balance of forces", "-", 1.0, kBalanceTolerance);
   check.found = 1.0;
-  CheckCurve line{"weight and load", {}, {}, true};
-  CheckCurve marks{"plane and clamp", {}, {}, false};
-  CheckCurve plane{"plane", {}, {}, false};
+  LineSeries line{"weight and load", {}, {}, true};
+  LineSeries marks{"plane and clamp", {}, {}, false};
+  LineSeries plane{"plane", {}, {}, false};
   for (const double pressure : kPressures) {
     const StaticResult result = solved(context, pressed_block(pressure));
     const double push = result.reactions_mn[kSupport][2];
@@ -87,7 +87,7 @@ VerificationCheck support_pull(const CheckContext& context) {
   const TissueState state = solved(context, model).state;
   Points pushes(state.positions.size(), Vec3::Zero());
   add_support_response(model, state, pushes, nullptr);
-  CheckCurve marks{"underside", {}, {}, false};
+  LineSeries marks{"underside", {}, {}, false};
   double highest = 0.0;
   for (const VertexId v : select(model.mesh, plane_across(2, 0.0))) {
     check.found = std::max(check.found, -pushes[v.index()][2]);

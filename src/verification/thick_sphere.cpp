@@ -55,7 +55,7 @@ VerificationCheck thick_sphere_rate(const CheckContext& context) {
   VerificationCheck check =
       described("Thick sphere under inner pressure, ν = 0.3: observed order of convergence of the inner displacement",
                 std::string(kSphereSource) + "; order 2 of linear tets", "-", 2.0, kSphereRateTolerance);
-  CheckCurve marks{"inner displacement", {}, {}, false};
+  LineSeries marks{"inner displacement", {}, {}, false};
   for (const int n : kLayers) {
     marks.add(n, std::abs(1.0 - inflate(context, n).inner_um() / closed_form_um(kInner)));
   }
@@ -82,13 +82,13 @@ VerificationCheck thick_sphere_displacement(const CheckContext& context) {
   }
   require_small_error(found.back() / check.expected - 1.0, kFinestRadialError);
   check.found = second_order_limit(found[1], found[2]);
-  CheckCurve marks{fmt::format("vertices, {} layers", kLayers.back()), {}, {}, false};
+  LineSeries marks{fmt::format("vertices, {} layers", kLayers.back()), {}, {}, false};
   const std::size_t stride = 1 + finest.state.positions.size() / 200;
   for (std::size_t v = 0; v < finest.state.positions.size(); v += stride) {
     const Vec3& rest = finest.model.mesh.vertices[v];
     marks.add(rest.norm(), 1000.0 * (finest.state.positions[v] - rest).dot(rest.normalized()));
   }
-  CheckCurve line{"Lamé", {}, {}, true};
+  LineSeries line{"Lamé", {}, {}, true};
   for (int i = 0; i <= 40; ++i) {
     const double radius = kInner + (kOuter - kInner) * i / 40.0;
     line.add(radius, closed_form_um(radius));

@@ -28,7 +28,7 @@ VerificationCheck vertex_order(const CheckContext& context) {
                 "no physics in names", "mm", 0.0, kOrderTolerance);
   const TissueModel model = cantilever({0, 1, 2, 3});
   const TissueState state = solved(context, model).state;
-  CheckCurve line{"order as made", {}, {}, true};
+  LineSeries line{"order as made", {}, {}, true};
   for (int i = 0; i <= 12; ++i) {
     const double x = kWedgeSize[0] * i / 12.0;
     line.add(x, mean_displacement(model, state, plane_across(0, x))[2]);
@@ -38,9 +38,9 @@ VerificationCheck vertex_order(const CheckContext& context) {
   for (const std::array<std::size_t, 4>& order : {std::array<std::size_t, 4>{2, 3, 0, 1}, {1, 2, 0, 3}, {3, 1, 0, 2}}) {
     const TissueModel other = cantilever(order);
     const TissueState found = solved(context, other).state;
-    CheckCurve marks{fmt::format("{}{}{}{}", order[0], order[1], order[2], order[3]), line.x, {}, false};
+    LineSeries marks{fmt::format("{}{}{}{}", order[0], order[1], order[2], order[3]), line.x, {}, false};
     for (const double x : line.x) marks.y.push_back(mean_displacement(other, found, plane_across(0, x))[2]);
-    check.plot.curves.push_back(marks);
+    check.plot.series.push_back(marks);
     for (std::size_t v = 0; v < state.positions.size(); ++v) {
       check.found = std::max(check.found, (state.positions[v] - found.positions[v]).norm());
     }

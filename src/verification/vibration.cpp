@@ -30,7 +30,7 @@ double period_s() {
 }
 
 /// Returns the tip displacement over one period, after release without velocity in the shape of the mode.
-CheckCurve swing(const CheckContext& context, const TissueModel& model) {
+LineSeries swing(const CheckContext& context, const TissueModel& model) {
   MotionSettings settings;
   settings.step_s = period_s() / kStepsPerPeriod;
   settings.max_newton_iterations = 5;
@@ -40,7 +40,7 @@ CheckCurve swing(const CheckContext& context, const TissueModel& model) {
   Motion motion = motion_at_rest(model, state);
   MotionWorkspace workspace(model, settings);
   const Region tip = plane_across(0, kRodSize[0]);
-  CheckCurve curve{"computed", {0.0}, {mean_displacement(model, motion.tissue, tip)[0]}, false};
+  LineSeries curve{"computed", {0.0}, {mean_displacement(model, motion.tissue, tip)[0]}, false};
   for (int step = 1; step <= kStepsPerPeriod; ++step) {
     throw_if_cancelled(context.monitor, "verifying");
     const StepReport report = advance_motion(model, motion, settings, workspace, context.workers);
@@ -52,7 +52,7 @@ CheckCurve swing(const CheckContext& context, const TissueModel& model) {
 }
 
 /// Returns the times at which the curve crosses zero, by linear interpolation.
-std::vector<double> crossings(const CheckCurve& curve) {
+std::vector<double> crossings(const LineSeries& curve) {
   std::vector<double> times;
   for (std::size_t i = 1; i < curve.x.size(); ++i) {
     const double a = curve.y[i - 1];
@@ -69,17 +69,17 @@ VerificationCheck vibration_period(const CheckContext& context) {
       described("Bar swinging along its axis, clamped at one end, ν = 0: period of the first mode",
                 "4 L √(ρ/E): a quarter wave in a uniform bar (Rayleigh, Theory of Sound, § 150)", "s", period_s(),
                 kPeriodTolerance * period_s());
-  const CheckCurve curve = swing(context, bar());
+  const LineSeries curve = swing(context, bar());
   const std::vector<double> times = crossings(curve);
   if (times.size() < 2) throw NotSolved("the bar does not swing twice through its position at rest");
   check.found = 2.0 * (times[1] - times[0]);
   check.note = fmt::format("{} steps per period; amplitude after one period {:.3f} of the first (implicit Euler damps)",
                            kStepsPerPeriod, curve.y.back() / kAmplitude);
-  CheckCurve line{"undamped closed form", {}, {}, true};
+  LineSeries line{"undamped closed form", {}, {}, true};
   for (int i = 0; i <= 100; ++i) {
     line.add(period_s() * i / 100.0, kAmplitude * std::cos(2.0 * units::kPi * i / 100.0));
   }
-  CheckCurve marks{"computed", {}, {}, false};
+  LineSeries marks{"computed", {}, {}, false};
   for (std::size_t i = 0; i < curve.x.size(); i += 4) marks.add(curve.x[i], curve.y[i]);
   check.plot = {"Free vibration of a bar", "time, s", "tip displacement, mm", false, false, {line, marks}};
   return check;

@@ -34,8 +34,8 @@ TEST_P(Check, FindsWhatIsExpected) {
                               << check.note;
     RecordProperty("found", std::to_string(check.found));
     EXPECT_FALSE(check.source.empty());
-    EXPECT_FALSE(check.plot.curves.empty());
-    for (const CheckCurve& curve : check.plot.curves) {
+    EXPECT_FALSE(check.plot.series.empty());
+    for (const LineSeries& curve : check.plot.series) {
       EXPECT_EQ(curve.x.size(), curve.y.size());
       EXPECT_FALSE(curve.x.empty());
       for (const std::vector<double>* values : {&curve.x, &curve.y}) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <incise/core/describe.hpp>
+#include <incise/core/line_plot.hpp>
 #include <incise/core/monitor.hpp>
 #include <incise/core/names.hpp>
 #include <incise/core/workers.hpp>
@@ -10,29 +11,6 @@
 #include <vector>
 
 namespace incise {
-
-/// One line of a check's plot.
-struct CheckCurve {
-  std::string name;
-  std::vector<double> x;
-  std::vector<double> y;      ///< as many as x, all finite
-  bool is_reference = false;  ///< true: known values, drawn as a line; false: values found, drawn as marks
-  /// Adds the point (at, value), in the units of the axes.
-  void add(double at, double value) {
-    x.push_back(at);
-    y.push_back(value);
-  }
-};
-
-/// The result of a check as curves; the labels of the axes include the units.
-struct CheckPlot {
-  std::string title;
-  std::string x_label;
-  std::string y_label;
-  bool is_log_x = false;
-  bool is_log_y = false;
-  std::vector<CheckCurve> curves;
-};
 
 /// The condition under which a check passes.
 enum class Criterion {
@@ -57,7 +35,7 @@ struct VerificationCheck {
   bool passed = false;
   double wall_s = 0.0;
   std::string note;  ///< further values, or why the solver gave up; may be empty
-  CheckPlot plot;
+  LinePlot plot;     ///< lines: known values; marks: values found; all are finite
 };
 
 inline void describe(Visitor& v, VerificationCheck& c) {
