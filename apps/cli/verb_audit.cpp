@@ -10,9 +10,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <map>
-#include <set>
-
 namespace incise::cli {
 namespace {
 
@@ -27,11 +24,7 @@ struct AuditArguments {
 Json audit_json(const Audit& audit, const PublishedTable& table) {
   Json json = to_json(audit);
   json["columns"] = {{"read", table.number_columns}, {"names", table.name_columns}};
-  std::map<std::string, std::size_t> rules;
-  for (const AuditedRow& row : audit.rows) {
-    for (const Finding& finding : row.findings) ++rules[std::string(to_string(finding.rule))];
-  }
-  json["findings_by_rule"] = rules;
+  json["findings_by_rule"] = findings_by_rule(audit);
   return json;
 }
 
@@ -40,23 +33,7 @@ void print_audit(const Audit& audit, const PublishedTable& table) {
   fmt::print("columns read: {}\n", fmt::join(table.number_columns, ", "));
   if (!table.name_columns.empty())
     fmt::print("columns of names, not numbers: {}\n", fmt::join(table.name_columns, ", "));
-  for (const AuditedRow& row : audit.rows) {
-    for (const Finding& finding : row.findings) fmt::print("{:<32} {}\n", row.name, to_text(finding));
-  }
-  std::map<std::string, std::size_t> unchecked;
-  for (const AuditedRow& row : audit.rows) {
-    std::set<std::string> rules;
-    for (const Unchecked& rule : row.not_checkable)
-      rules.insert(fmt::format("{} (needs {})", to_string(rule.rule), rule.needs));
-    for (const std::string& rule : rules) ++unchecked[rule];
-  }
-  for (const auto& [rule, count] : unchecked)
-    fmt::print("not checkable in {} of {} rows: {}\n", count, audit.rows.size(), rule);
-  fmt::print("{} of {} rows impossible\n", audit.impossible_rows, audit.rows.size());
-  if (audit.baseline_mm) {
-    fmt::print("score baseline {:.3f} to {:.3f} mm explains {} of {} rows\n", audit.baseline_mm->low_mm,
-               audit.baseline_mm->high_mm, audit.rows_on_baseline, audit.scored_rows);
-  }
+  fmt::print("{}", to_text(audit));
 }
 
 int run_audit(const AuditArguments& given, const CommonOptions& options) {

@@ -6,18 +6,14 @@
 namespace incise::cli {
 
 void add_phantom(Application& application) {
-  struct PhantomArguments {
-    std::string format = "dicom";
-  };
-  auto [verb, a] = application.add_verb<PhantomArguments>(
+  auto [verb, a] = application.add_verb<laboratory::PhantomRequest>(
       "phantom", "Make a virtual specimen: the CT of a porcine-tongue-like body with a tumour edge, and a case file",
       "incise phantom --seed 7 --format nrrd -o specimen7",
-      [](const PhantomArguments& arguments, const CommonOptions& options) {
-        const laboratory::PhantomRequest request{value_named<laboratory::PhantomForm>(arguments.format),
-                                                 options.required_output("specimen")};
+      [](laboratory::PhantomRequest request, const CommonOptions& options) {
+        request.output = options.required_output("specimen");
         return run_step(options, [&](const auto& context) { return laboratory::make_phantom_case(request, context); });
       });
-  verb->add_option("--format", a.format, "Format of the CT")->check(name_of_any<laboratory::PhantomForm>());
+  add_choice(*verb, "--format", a.form, "Format of the CT");
 }
 
 }  // namespace incise::cli

@@ -10,7 +10,6 @@ namespace incise::cli {
 namespace {
 
 struct ProjectArguments : steps::ProjectRequest {
-  std::string kind = "incise";
   std::string axis = "path";
   std::string metric = "ct";
   std::vector<double> scale_center;
@@ -20,8 +19,7 @@ struct ProjectArguments : steps::ProjectRequest {
 
 ProjectSettings settings_of(const ProjectArguments& arguments) {
   ProjectSettings settings = arguments.settings;
-  settings.kind = value_named<PathKind>(arguments.kind);
-  settings.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
+  if (arguments.axis == "normal") settings.axis_mode = AxisMode::SurfaceNormal;
   if (settings.kind == PathKind::Mark) {
     if (arguments.depth_mm > 0.0) settings.mark_depth_mm = arguments.depth_mm;
     if (arguments.speed_mm_s > 0.0) settings.mark_speed_mm_s = arguments.speed_mm_s;
@@ -78,8 +76,7 @@ void add_project(Application& application) {
           "With ct: a place (mm, robot's frame) where the cloud is right; by default the camera's origin (--camera), "
           "or without a camera the middle of the path")
       ->expected(3);
-  verb->add_option("--kind", a.kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s")
-      ->check(name_of_any<PathKind>());
+  add_choice(*verb, "--kind", a.settings.kind, "incise: the path; mark: the tumour edge, 1 mm deep at 2 mm/s");
   verb->add_option("--axis", a.axis,
                    "Tool axis: as in the path, or against the measured surface's normal (a mark's: the mean axis)")
       ->check(CLI::IsMember({"path", "normal"}));

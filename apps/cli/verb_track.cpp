@@ -18,7 +18,6 @@ constexpr double kLargestMarginMm = 50.0;  // a wider ring leaves the organ
 
 struct TrackArguments : steps::TrackRequest {
   std::string mark_name = "green";
-  std::string edge_name = "middle";
   std::string axis = "approach";
   std::vector<const CLI::Option*> of_mark;  ///< options without a meaning if there is no mark
 };
@@ -41,8 +40,7 @@ int run_track(const TrackArguments& arguments, const CommonOptions& options) {
     if (!request.mark && option->count() > 0)
       throw CaseError("command line", option->get_name(), "an option about the mark, with --mark none", "a mark");
   }
-  request.edge = value_named<LineEdge>(arguments.edge_name);
-  request.plan.axis_mode = arguments.axis == "normal" ? AxisMode::SurfaceNormal : AxisMode::Approach;
+  if (arguments.axis == "normal") request.plan.axis_mode = AxisMode::SurfaceNormal;
   return run_step(options, [&](const auto& context) { return steps::track_mark(request, context); });
 }
 
@@ -65,8 +63,7 @@ void add_track(Application& application) {
   verb->add_option("--mark", a.mark_name, "Colour of the mark; none: the cloud alone")
       ->check(CLI::IsMember({"red", "green", kNoMark}));
   const std::vector<CLI::Option*> before = verb->get_options();
-  verb->add_option("--edge", a.edge_name, "Contour of the mark: its middle, or its inner border")
-      ->check(name_of_any<LineEdge>());
+  add_choice(*verb, "--edge", a.edge, "Contour of the mark: its middle, or its inner border");
   verb->add_option(
           "--max-gap-mm", a.max_gap_mm,
           "A ring with a longer gap is open. A gap is known only to 0.18 mm and 2 pixels: a ring whose gap is longer "

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 
 namespace incise {
 namespace {
@@ -74,6 +75,34 @@ std::string to_text(const Finding& finding) {
   return (finding.group.empty() ? "" : finding.group + ": ") +
          fmt::format(fmt::runtime(kPatterns.at(static_cast<std::size_t>(finding.rule))),
                      fmt::arg("found", finding.printed), fmt::arg("bound", finding.bound));
+}
+
+std::map<std::string, std::size_t> findings_by_rule(const Audit& audit) {
+  std::map<std::string, std::size_t> rules;
+  for (const AuditedRow& row : audit.rows) {
+    for (const Finding& finding : row.findings) ++rules[std::string(to_string(finding.rule))];
+  }
+  return rules;
+}
+
+std::string to_text(const Audit& audit) {
+  std::string text;
+  std::map<std::string, std::size_t> unchecked;  // rows in which a rule could not be checked
+  for (const AuditedRow& row : audit.rows) {
+    for (const Finding& finding : row.findings) text += fmt::format("{:<32} {}\n", row.name, to_text(finding));
+    std::set<std::string> rules;
+    for (const Unchecked& rule : row.not_checkable)
+      rules.insert(fmt::format("{} (needs {})", to_string(rule.rule), rule.needs));
+    for (const std::string& rule : rules) ++unchecked[rule];
+  }
+  for (const auto& [rule, count] : unchecked)
+    text += fmt::format("not checkable in {} of {} rows: {}\n", count, audit.rows.size(), rule);
+  text += fmt::format("{} of {} rows impossible\n", audit.impossible_rows, audit.rows.size());
+  if (audit.baseline_mm) {
+    text += fmt::format("score baseline {:.3f} to {:.3f} mm explains {} of {} rows\n", audit.baseline_mm->low_mm,
+                        audit.baseline_mm->high_mm, audit.rows_on_baseline, audit.scored_rows);
+  }
+  return text;
 }
 
 Audit audit(const std::vector<PrintedRow>& rows, const AuditSettings& settings) {

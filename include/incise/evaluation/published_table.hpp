@@ -5,6 +5,7 @@
 #include <incise/evaluation/registration_score.hpp>
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -134,6 +135,12 @@ struct Audit {
   std::size_t rows_on_baseline = 0;  ///< rows whose per cent these baselines explain
   std::size_t scored_rows = 0;       ///< rows with a mean, a max and a per cent above its rounding
 };
+
+/// Returns how often each rule is broken, by its name.
+[[nodiscard]] std::map<std::string, std::size_t> findings_by_rule(const Audit& audit);
+/// Returns an audit as lines for a person: findings, rules that could not be checked, number of impossible rows,
+/// baseline.
+[[nodiscard]] std::string to_text(const Audit& audit);
 
 inline void describe(Visitor& v, Audit& a) {
   v("impossible_rows", a.impossible_rows, "Number of rows that no data can produce.");
