@@ -3,7 +3,6 @@
 #include <incise/core/error.hpp>
 #include <incise/cutting/cut_invariants.hpp>
 #include <incise/cutting/incision.hpp>
-#include <incise/cutting/incision_memory.hpp>
 
 #include <fmt/format.h>
 
@@ -165,13 +164,10 @@ class IncisionRun {
   }
 
   void tell_size() const {
-    const std::size_t tets = model_.mesh.tets.size();
-    const double bytes = static_cast<double>(expected_memory_bytes(
-        model_.mesh.vertices.size(), tets, model_.material.volume, settings_.frames, viscous_terms(model_.material)));
     monitor_.message(
         Severity::Notice,
-        fmt::format("cutting {} tets in {} steps, then at most {} more until they are at rest, with about {:.0f} MB",
-                    tets, steps_left(), kMaxRelaxationSteps - progress_.relaxation_steps, bytes / 1e6));
+        fmt::format("cutting {} tets in {} steps, then at most {} more until they are at rest", model_.mesh.tets.size(),
+                    steps_left(), kMaxRelaxationSteps - progress_.relaxation_steps));
   }
 
   /// Reports the estimated duration after kStepsToTellFrom steps.

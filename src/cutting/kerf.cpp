@@ -158,11 +158,13 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
   midline_settings.layer_bottom_mm = settings.midline_layer_mm;
   const CutState& state = result.final_state;
   const TissueState& tissue = state.tissue;
+  std::optional<PointLattice> lattice;  // of a cut by points
   std::optional<PointKerf> by_points;
   std::optional<PartedTissue> parted;
   if (settings.cut.rule == CutRule::Lattice) {
-    by_points.emplace(model, state.points, stretched.positions);
-    parted.emplace(model, stretched.positions, state);
+    lattice = lattice_of(model, state.points);
+    by_points.emplace(model, *lattice, state.points, stretched.positions);
+    parted.emplace(model, *lattice, stretched.positions, state);
   }
   const KerfInput kerf = kerf_input(model, stretched, path, settings, state.record, by_points ? &*by_points : nullptr);
   KerfMeasures& measures = result.kerf;
@@ -179,7 +181,7 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
         measures.body.boundary = manifoldness_of(measures.body.surface.triangles);
       },
       [&] { measures.depth = depth_reached(kerf, path, settings); },
-      [&] { measures.drag = tissue_drag(model, stretched.positions, path, settings, state); },
+      [&] { measures.drag = tissue_drag(model, lattice, stretched.positions, path, settings, state); },
       // Bridges too narrow to count for the mid-line do not hold the plug either.
       [&] {
         if (parted) return measure_final_edges(kerf, *parted, path, result);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "point_lattice.hpp"
+
 #include <incise/cutting/incision.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 
@@ -31,9 +33,11 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
                                  std::span<const std::uint8_t> is_live);
 [[nodiscard]] KerfLayer kerf_layer(const KerfInput& kerf, const ToolPath& path, double depth_mm);
 [[nodiscard]] DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings);
-[[nodiscard]] std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const Vec3> stretched,
-                                                    const ToolPath& path, const IncisionSettings& settings,
-                                                    const CutState& state);
+/// @param lattice  the points of a cut by points on the whole mesh; absent: of a cut by another rule
+[[nodiscard]] std::optional<TissueDrag> tissue_drag(const TissueModel& model,
+                                                    const std::optional<PointLattice>& lattice,
+                                                    std::span<const Vec3> stretched, const ToolPath& path,
+                                                    const IncisionSettings& settings, const CutState& state);
 /// @throws InvalidArgument for a tumour surface that does not enclose a volume.
 void require_volume(const TriMesh& tumor_surface);
 /// @param body   of the kerf.

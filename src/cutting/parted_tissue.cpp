@@ -5,12 +5,13 @@
 
 namespace incise {
 
-PartedTissue::PartedTissue(const TissueModel& whole, std::span<const Vec3> from, const CutState& state)
+PartedTissue::PartedTissue(const TissueModel& whole, const PointLattice& lattice, std::span<const Vec3> from,
+                           const CutState& state)
     : whole_(whole),
       from_(from),
       state_(state),
       split_(split_mesh(whole.mesh, state.splits)),
-      lattice_(lattice_of(whole, state.points)),
+      lattice_(lattice),
       locator_(whole.mesh, from) {
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
     const bool is_live = state.tissue.is_live[state.points.tet_of[i].index()] != 0;

@@ -16,8 +16,10 @@ namespace incise {
 class PartedTissue {
  public:
   /// Keeps references to all arguments.
-  /// @param from  positions of the whole mesh's vertices in the configuration in which places are given, N x 3, mm.
-  PartedTissue(const TissueModel& whole, std::span<const Vec3> from, const CutState& state);
+  /// @param lattice  the points on the whole mesh (lattice_of).
+  /// @param from     positions of the whole mesh's vertices in the configuration in which places are given, N x 3, mm.
+  PartedTissue(const TissueModel& whole, const PointLattice& lattice, std::span<const Vec3> from,
+               const CutState& state);
 
   /// Returns the displacement of a place from that configuration to the state's, mm.
   /// @param tolerance_mm  greatest distance of the place from the body and, in a tet near which the tool has come, from
@@ -37,7 +39,7 @@ class PartedTissue {
   std::span<const Vec3> from_;
   const CutState& state_;
   TetMesh split_;
-  PointLattice lattice_;
+  const PointLattice& lattice_;
   TetLocator locator_;
   PointLattice::AtNodes<std::vector<std::size_t>> near_node_;  // points that are not parted
 };

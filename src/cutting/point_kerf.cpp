@@ -35,8 +35,9 @@ void add_part(const std::array<Vec3, 4>& at, const std::array<double, 4>& dose,
 
 }  // namespace
 
-PointKerf::PointKerf(const TissueModel& model, const CutPoints& points, std::span<const Vec3> positions)
-    : model_(model), points_(points), positions_(positions), lattice_(lattice_of(model, points)) {
+PointKerf::PointKerf(const TissueModel& model, const PointLattice& lattice, const CutPoints& points,
+                     std::span<const Vec3> positions)
+    : model_(model), points_(points), positions_(positions), lattice_(lattice) {
   points_at_.reserve(lattice_.size());
   for (std::size_t i = 0; i < lattice_.size(); ++i) {
     if (lattice_.node_of(i)) points_at_.emplace(*lattice_.node_of(i), i);
@@ -47,8 +48,12 @@ PointKerf::Corner PointKerf::corner(const PointLattice::Node& node) const {
   const auto found = points_at_.find(node);
   if (found == points_at_.end()) return {0.0, Vec3::Zero(), false};
   const std::size_t point = found->second;
-  return {std::min(DoseField::kMostDose, points_.dose[point]),
-          lattice_.position(point, positions_) - lattice_.position(point, model_.mesh.vertices), true};
+  return {dose(node), lattice_.position(point, positions_) - lattice_.position(point, model_.mesh.vertices), true};
+}
+
+double PointKerf::dose(const PointLattice::Node& node) const {
+  const auto found = points_at_.find(node);
+  return found == points_at_.end() ? 0.0 : std::min(DoseField::kMostDose, points_.dose[found->second]);
 }
 
 PointKerf::Cell PointKerf::cell(const PointLattice::Node& low) const {
@@ -77,7 +82,17 @@ std::vector<std::array<Vec3, 4>> PointKerf::tets() const {
     if (points_.dose[point] < 1.0) continue;
     for (std::size_t c = 0; c < 8; ++c) cells.insert(PointLattice::corner_of(node, c, -1));
   }
+  // The list is long: it does not grow as it is filled.
+  constexpr std::array<std::size_t, 5> kParts{0, 1, 3, 3, 1};  // of a tet with so many corners in the kerf
+  std::size_t count = 0;
+  for (const PointLattice::Node& low : cells) {
+    std::array<bool, 8> is_in;
+    for (std::size_t c = 0; c < 8; ++c) is_in[c] = dose(PointLattice::corner_of(low, c)) >= 1.0;
+    for (const auto& tet : kKuhn)
+      count += kParts[static_cast<std::size_t>(std::ranges::count_if(tet, [&](std::size_t c) { return is_in[c]; }))];
+  }
   std::vector<std::array<Vec3, 4>> result;
+  result.reserve(count);
   for (const PointLattice::Node& low : cells) {
     const auto [doses, at] = cell(low);
     for (const auto& [a, b, c, d] : kKuhn)

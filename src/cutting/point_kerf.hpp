@@ -12,8 +12,10 @@ namespace incise {
 class PointKerf {
  public:
   /// Keeps references to all arguments.
+  /// @param lattice    the points on the whole mesh (lattice_of).
   /// @param positions  of the whole mesh's vertices in the configuration in which the kerf is measured, N x 3, mm.
-  PointKerf(const TissueModel& model, const CutPoints& points, std::span<const Vec3> positions);
+  PointKerf(const TissueModel& model, const PointLattice& lattice, const CutPoints& points,
+            std::span<const Vec3> positions);
 
   /// Returns the kerf as tets, clipped at dose 1, mm.
   [[nodiscard]] std::vector<std::array<Vec3, 4>> tets() const;
@@ -27,6 +29,7 @@ class PointKerf {
     bool is_known;
   };
   [[nodiscard]] Corner corner(const PointLattice::Node& node) const;
+  [[nodiscard]] double dose(const PointLattice::Node& node) const;
   struct Cell {
     std::array<double, 8> doses;
     std::array<Vec3, 8> at;
@@ -38,7 +41,7 @@ class PointKerf {
   const TissueModel& model_;
   const CutPoints& points_;
   std::span<const Vec3> positions_;
-  PointLattice lattice_;
+  const PointLattice& lattice_;
   PointLattice::AtNodes<std::size_t> points_at_;
 };
 

@@ -1,5 +1,4 @@
 #include "kerf.hpp"
-#include "point_lattice.hpp"
 
 #include <algorithm>
 #include <map>
@@ -70,18 +69,18 @@ struct StepSum {
 };
 
 /// Sums over the tissue that was cut in each step, by the step's number.
-std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> stretched,
-                               const IncisionSettings& settings, const CutState& state) {
+std::map<int, StepSum> sums_of(const TissueModel& model, const std::optional<PointLattice>& lattice,
+                               std::span<const Vec3> stretched, const IncisionSettings& settings,
+                               const CutState& state) {
   std::map<int, StepSum> sums;
-  if (settings.cut.rule == CutRule::Lattice) {
-    const PointLattice lattice = lattice_of(model, state.points);
-    for (std::size_t i = 0; i < lattice.size(); ++i) {
+  if (lattice) {
+    for (std::size_t i = 0; i < lattice->size(); ++i) {
       const int number = state.points.parted_step[i];
       if (number < 0) continue;
       StepSum& step = sums[number];
       step.time_s = number * settings.cut.step_s();
-      step.volume_mm3 += lattice.volume_mm3(i);
-      step.moment += lattice.volume_mm3(i) * (state.points.parted_mm[i] - lattice.position(i, stretched));
+      step.volume_mm3 += lattice->volume_mm3(i);
+      step.moment += lattice->volume_mm3(i) * (state.points.parted_mm[i] - lattice->position(i, stretched));
     }
     return sums;
   }
@@ -99,12 +98,13 @@ std::map<int, StepSum> sums_of(const TissueModel& model, std::span<const Vec3> s
 
 }  // namespace
 
-std::optional<TissueDrag> tissue_drag(const TissueModel& model, std::span<const Vec3> stretched, const ToolPath& path,
+std::optional<TissueDrag> tissue_drag(const TissueModel& model, const std::optional<PointLattice>& lattice,
+                                      std::span<const Vec3> stretched, const ToolPath& path,
                                       const IncisionSettings& settings, const CutState& state) {
   const Course course(path, settings);
   TissueDrag drag;
   std::vector<double> volumes;
-  for (const auto& [number, step] : sums_of(model, stretched, settings, state)) {
+  for (const auto& [number, step] : sums_of(model, lattice, stretched, settings, state)) {
     const std::optional<Vec3> direction = course.direction(step.time_s);
     if (!direction || step.volume_mm3 == 0.0) continue;
     const Vec3 displacement = step.moment / step.volume_mm3;

@@ -30,14 +30,15 @@ void require_valid(const KerfDepthSettings& s, const Contour& course) {
 }
 
 /// Returns the depth of the lowest removed point below the skin in each line of sight, mm; 0 where nothing is removed.
-ScalarRaster depth_picture(const KerfInput& kerf, const ViewTets& tets, const ViewFrame& view, const RasterGrid& grid) {
+ScalarRaster depth_picture(const KerfInput& kerf, const ViewFrame& view, const RasterGrid& grid) {
   const DepthBuffer skin = depth_buffer(grid, points_in_view(kerf.surface.vertices, view), kerf.surface.triangles);
   ScalarRaster depth(grid, 0.0);
-  for_each_pixel_over(tets, skin, [&](std::size_t pixel, const Vec2& centre, const SightLines& tet) {
-    const double top = skin.heights_mm[pixel];
-    const SightLines::Span gone = tet.within(centre, -std::numeric_limits<double>::infinity(), top);
-    if (gone.low <= gone.high) depth.pixels[pixel] = std::max(depth.pixels[pixel], top - gone.low);
-  });
+  for_each_pixel_over(tets_in_view(kerf, view), skin,
+                      [&](std::size_t pixel, const Vec2& centre, const SightLines& tet) {
+                        const double top = skin.heights_mm[pixel];
+                        const SightLines::Span gone = tet.within(centre, -std::numeric_limits<double>::infinity(), top);
+                        if (gone.low <= gone.high) depth.pixels[pixel] = std::max(depth.pixels[pixel], top - gone.low);
+                      });
   return depth;
 }
 
@@ -71,7 +72,7 @@ DepthProfile depth_along(const KerfInput& kerf, const Contour& course, const Ker
   const Contour in_view{points_in_view(profile.course.points, view), course.is_closed};
   const Box3 box = bounding_box(in_view.points);
   const RasterGrid grid = grid_around(box.min().head<2>(), box.max().head<2>(), settings.pixel_mm, settings.reach_mm);
-  const ScalarRaster depth = depth_picture(kerf, tets_in_view(kerf, view), view, grid);
+  const ScalarRaster depth = depth_picture(kerf, view, grid);
   for (std::size_t i = 0; i < count; ++i) {
     profile.arclength_mm.push_back(spacing * static_cast<double>(i));
     profile.depth_mm.push_back(deepest_across(depth, in_view.points[i].head<2>(), normal_at(in_view, i), settings));

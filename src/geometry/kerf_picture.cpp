@@ -22,6 +22,7 @@ constexpr double kKerfBorderMm = 3.0;
 /// Number of directions that the search for a gap distinguishes.
 constexpr int kDirections = 3600;
 
+template <class ViewTets>
 ScalarRaster coverage_of(const ViewTets& tets, const DepthBuffer& surface, const KerfMidlineSettings& settings) {
   ScalarRaster coverage(surface, 0.0);
   const double thickness = settings.layer_bottom_mm - settings.layer_top_mm;
@@ -51,17 +52,6 @@ void require_valid(const KerfMidlineSettings& s) {
 
 }  // namespace
 
-ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view) {
-  ViewTets tets = input.removed_tets;
-  for (std::size_t t = 0; t < tets.size(); ++t) {
-    for (Vec3& corner : tets[t]) {
-      INCISE_REQUIRE(corner.allFinite(), fmt::format("removed tet {} has a corner that is not finite", t));
-      corner = view.to_view(corner);
-    }
-  }
-  return tets;
-}
-
 Points points_in_view(std::span<const Vec3> points, const ViewFrame& view) {
   Points seen;
   seen.reserve(points.size());
@@ -72,10 +62,10 @@ Points points_in_view(std::span<const Vec3> points, const ViewFrame& view) {
 std::optional<KerfPicture> kerf_picture(const KerfInput& input, const ViewFrame& view,
                                         const KerfMidlineSettings& settings) {
   require_valid(settings);
-  const ViewTets tets = tets_in_view(input, view);
-  if (tets.empty()) return std::nullopt;
+  if (input.removed_tets.empty()) return std::nullopt;
+  const auto tets = tets_in_view(input, view);
   Box3 box;
-  for (const auto& corners : tets) {
+  for (const std::array<Vec3, 4>& corners : tets) {
     for (const Vec3& corner : corners) box.extend(corner);
   }
   const double border = kKerfBorderMm + settings.closing_mm;

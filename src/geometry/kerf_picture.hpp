@@ -2,16 +2,19 @@
 
 #include "geometry/sight_lines.hpp"
 
+#include <incise/core/error.hpp>
 #include <incise/geometry/contour.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 #include <incise/geometry/raster.hpp>
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
+#include <ranges>
 #include <span>
-#include <vector>
 
 namespace incise {
 
@@ -24,17 +27,26 @@ struct KerfPicture {
   Raster mask;            ///< where enough is removed; includes narrow bridges and small islands
 };
 
-using ViewTets = std::vector<std::array<Vec3, 4>>;
-
-/// Returns the removed tets in view coordinates, mm. @throws InvalidArgument for a corner that is not finite.
-[[nodiscard]] ViewTets tets_in_view(const KerfInput& input, const ViewFrame& view);
+/// Returns the removed tets in view coordinates, mm, each computed when it is visited: there may be a million. Keeps
+/// references to both arguments. A visit throws InvalidArgument for a corner that is not finite.
+[[nodiscard]] inline auto tets_in_view(const KerfInput& input, const ViewFrame& view) {
+  return input.removed_tets | std::views::transform([&](const std::array<Vec3, 4>& tet) {
+           std::array<Vec3, 4> seen;
+           for (std::size_t c = 0; c < 4; ++c) {
+             INCISE_REQUIRE(tet[c].allFinite(), fmt::format("removed tet {} has a corner that is not finite",
+                                                            &tet - input.removed_tets.data()));
+             seen[c] = view.to_view(tet[c]);
+           }
+           return seen;
+         });
+}
 
 /// Returns the points in view coordinates, mm.
 [[nodiscard]] Points points_in_view(std::span<const Vec3> points, const ViewFrame& view);
 
 /// Calls visit(pixel, centre, tet) for each tet and each pixel that shows the surface and whose centre lies in the
-/// tet's box. @param pixel  its offset.  @param tet  as SightLines.
-template <class Visit>
+/// tet's box. @param tets  as tets_in_view returns.  @param pixel  its offset.  @param tet  as SightLines.
+template <class ViewTets, class Visit>
 void for_each_pixel_over(const ViewTets& tets, const DepthBuffer& surface, const Visit& visit) {
   for (const std::array<Vec3, 4>& corners : tets) {
     const Box3 box = bounding_box(corners);

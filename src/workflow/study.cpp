@@ -1,5 +1,6 @@
 #include <incise/core/error.hpp>
 #include <incise/core/memory.hpp>
+#include <incise/core/units.hpp>
 #include <incise/cutting/cut_invariants.hpp>
 #include <incise/cutting/incision_memory.hpp>
 #include <incise/cutting/tool_program.hpp>
@@ -306,11 +307,20 @@ class Runner {
     return true;
   }
 
+  /// About: the path itself is planned later, on the stretched tissue.
+  [[nodiscard]] double planned_length_mm() const {
+    if (given_path_) return length_mm(entry_contour(*given_path_));
+    if (line_) return length_mm(*line_);
+    return tumor_edge_ ? length_mm(*tumor_edge_) + 2.0 * units::kPi * settings_.plan.lateral_margin_mm : 0.0;
+  }
+
   /// Reports the memory that the rest needs, and refuses the run if less is available.
   void require_memory(const TetMesh& mesh) {
-    const std::uint64_t needed =
-        expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, settings_.frames,
-                              viscous_terms(settings_.material));
+    std::uint64_t needed = expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume,
+                                                 settings_.frames, viscous_terms(settings_.material));
+    if (settings_.cut.rule == CutRule::Lattice && options_.until >= Stage::Simulate)
+      needed =
+          expected_memory_by_points_bytes(needed, mesh, planned_length_mm(), settings_.plan.depth_mm, settings_.cut);
     const std::optional<std::uint64_t> held = held_memory_bytes();
     monitor_.message(Severity::Notice,
                      fmt::format("tissue: {} tets, {} vertices; stretching and cutting it takes about {:.0f} MB{}",

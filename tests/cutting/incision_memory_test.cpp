@@ -49,6 +49,24 @@ TEST_F(IncisionMemory, WithAveragedVolumeIsWithinThirtyPercentOfWhatWasExpected)
   EXPECT_NEAR(expected_over_measured({22, 22, 6}, VolumeTreatment::Averaged), 1.0, 0.3);
 }
 
+TEST_F(IncisionMemory, OfACutByPointsIsWithinThirtyPercentOfWhatWasExpected) {
+  settings_.cut.rule = CutRule::Lattice;
+  settings_.cut.dullness = 5.4;
+  TetMesh mesh = make_block({32, 32, 8}, {22, 22, 6});
+  const double expected = static_cast<double>(expected_memory_by_points_bytes(
+      expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), VolumeTreatment::PerTet, 0), mesh,
+      length_mm(entry_contour(ring(4.0))), 4.0, settings_.cut));
+  if (!reset_peak()) GTEST_SKIP() << "this system does not tell the peak of a process";
+  const std::uint64_t before = *peak_memory_bytes();
+  const TissueModel model = make_tissue_model(std::move(mesh), Material{},
+                                              {FixedConstraint{BoxRegion{Box3(Vec3(-1, -1, -1), Vec3(33, 33, 0.1))}}});
+  Workers workers(1);
+  Monitor silent;
+  const IncisionResult done = simulate_incision(model, rest_state(model), ring(4.0), settings_, workers, silent);
+  ASSERT_EQ(done.outcome, Outcome::Success);  // the measures of a kerf take most
+  EXPECT_NEAR(expected / static_cast<double>(*peak_memory_bytes() - before), 1.0, 0.3);
+}
+
 TEST(ExpectedMemory, GrowsByWhatTheFramesHold) {
   const auto without = expected_memory_bytes(1000, 5000, VolumeTreatment::PerTet, 0);
   EXPECT_EQ(expected_memory_bytes(1000, 5000, VolumeTreatment::PerTet, 10) - without, 10U * 24 * 1000);

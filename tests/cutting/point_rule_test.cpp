@@ -100,7 +100,8 @@ TEST_F(StraightPass, ThroughTissueThatCannotMoveLeavesTheKerfOfItsKernel) {
   settings_.dullness = 9.0;
   settings_.advance_per_step_mm = 0.13;
   pass(model, 1.0, 11.0);
-  const PointKerf kerf(model, state_.points, model.mesh.vertices);
+  const PointLattice lattice = lattice_of(model, state_.points);
+  const PointKerf kerf(model, lattice, state_.points, model.mesh.vertices);
   double volume = 0.0;
   for (const auto& [a, b, c, d] : kerf.tets()) volume += std::abs(signed_volume(a, b, c, d));
   const TriMesh surface = kerf.surface();
@@ -117,7 +118,8 @@ TEST_F(StraightPass, ThroughFineTetsEmptiesAndRemovesThoseInTheMiddleOfTheSameKe
   settings_.dullness = 9.0;
   settings_.advance_per_step_mm = 0.13;
   pass(model, 1.0, 7.0);
-  const Box3 box = part_of(PointKerf(model, state_.points, model.mesh.vertices).surface(), 4.0);
+  const PointLattice lattice = lattice_of(model, state_.points);
+  const Box3 box = part_of(PointKerf(model, lattice, state_.points, model.mesh.vertices).surface(), 4.0);
   EXPECT_NEAR(box.sizes().x(), 2.0 * half_width_mm(), 0.03);
   ASSERT_GT(state_.record.removals.size(), 20U);
   for (const Removal& removal : state_.record.removals)
@@ -533,8 +535,9 @@ TEST_P(CutInTwo, EachPartGoesBackToItsShapeAtRest) {
         << v << " moved by " << moved.transpose();
   }
   // At both borders of the kerf, the tissue is that of its own side, wherever in a tet the border lies.
-  const PartedTissue tissue(model_, before_, state_);
-  const PointKerf kerf(model_, state_.points, before_);
+  const PointLattice lattice = lattice_of(model_, state_.points);
+  const PartedTissue tissue(model_, lattice, before_, state_);
+  const PointKerf kerf(model_, lattice, state_.points, before_);
   const TriMesh surface = kerf.surface();
   std::size_t left = 0, right = 0;
   for (const Vec3& p : surface.vertices) {
@@ -577,7 +580,8 @@ TEST_P(CutInTwo, IsDrawnAsTwoBodiesWithTheKerfBetweenThem) {
   EXPECT_NEAR(skin, 288.0, 1e-9);
   // The needle has gone through 6 x 4 mm; the width is that of tissue which nothing holds.
   double kerf = 0.0;
-  for (const auto& [a, b, c, d] : PointKerf(model_, state_.points, model_.mesh.vertices).tets())
+  const PointLattice lattice = lattice_of(model_, state_.points);
+  for (const auto& [a, b, c, d] : PointKerf(model_, lattice, state_.points, model_.mesh.vertices).tets())
     kerf += std::abs(signed_volume(a, b, c, d));
   // Halves of edges of 2 mm hardly show a kerf of 1.4 mm.
   EXPECT_NEAR(gone, kerf, (std::get<0>(GetParam()) == 6 ? 0.15 : 0.06) * kerf);
