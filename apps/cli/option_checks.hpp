@@ -64,6 +64,16 @@ CLI::Option* add_choice(CLI::App& verb, const std::string& option, E& value, con
       ->default_str(std::string(to_string(value)));
 }
 
+/// As add_choice, of an enum that may be absent: absent is the default, and has no name.
+template <Named E>
+CLI::Option* add_choice(CLI::App& verb, const std::string& option, std::optional<E>& value,
+                        const std::string& meaning) {
+  return verb
+      .add_option_function<std::string>(
+          option, [&value](const std::string& name) { value = value_named<E>(name); }, meaning)
+      ->check(name_of_any<E>());
+}
+
 /// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), named after its option
 /// (--close-margin-mm). Does nothing without violations.
 void require_valid(const std::vector<Problem>& violations);

@@ -60,12 +60,11 @@ int compensate(const CompensateOptions& chosen, const CommonOptions& options) {
 }  // namespace
 
 void add_compensation_method(CLI::App& verb, CutOptions& options) {
-  verb.add_option_function<std::string>(
-          "--method", [&options](const std::string& name) { options.method = value_named<CompensationMethod>(name); },
-          "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 if there is an "
-          "objection to the best of them); paper: each waypoint moves once by the error simulated there; profile: each "
-          "waypoint moves once by the case's compensation.photographed_mm. Overrides the case's compensation.method")
-      ->check(name_of_any<CompensationMethod>());
+  add_choice(verb, "--method", options.method,
+             "default: pass by pass until the cut lies where it was intended, at most 4 cuts in all (8 if there is an "
+             "objection to the best of them); paper: each waypoint moves once by the error simulated there; profile: "
+             "each waypoint moves once by the case's compensation.photographed_mm. Overrides the case's "
+             "compensation.method");
 }
 
 void add_compensate(Application& application) {

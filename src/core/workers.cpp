@@ -55,7 +55,7 @@ struct Workers::Shared {
 
   std::mutex mutex;  // guards `failure` and what is written to `failed_chunk`
   std::exception_ptr failure;
-  std::atomic<std::size_t> failed_chunk = kNone;  // the lowest; chunks above it are not run any more
+  std::atomic<std::size_t> failed_chunk = kNone;  // the lowest; chunks above it are no longer run
 
   [[nodiscard]] std::size_t range_start(std::size_t range) const { return range * chunks.load() / tickets.size(); }
 

@@ -4,30 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <numeric>
 
 namespace incise {
 namespace {
 
-// Of a cut by points, found by measurement: a second model and solver while the split mesh's are remade, and the bytes
-// of a point in the cut and while the kerf is measured.
-constexpr double kModelsByPoints = 2.0;
-constexpr double kPerPoint = 410.0;
+// Of a cut by points, found by measurement.
+constexpr double kModelsOfSplitMesh = 1.0;  // its model and solver, over those of the whole mesh
+constexpr double kPerPoint = 410.0;         // bytes, most of them while the kerf is measured
 constexpr double kEdgesBeyondKernel = 0.6;  // how far tets that the kernel touches reach beyond it
-
-/// The edge of a regular tet of the median volume: of a graded mesh, one of the fine tets.
-double median_edge_mm(const TetMesh& mesh) {
-  if (mesh.tets.empty()) return 0.0;
-  std::vector<double> volumes;
-  volumes.reserve(mesh.tets.size());
-  for (const Tet& tet : mesh.tets) {
-    const std::array<Vec3, 4> at = corners_of(mesh.vertices, tet);
-    volumes.push_back(std::abs(signed_volume(at[0], at[1], at[2], at[3])));
-  }
-  const auto middle = volumes.begin() + static_cast<std::ptrdiff_t>(volumes.size() / 2);
-  std::nth_element(volumes.begin(), middle, volumes.end());
-  return std::cbrt(6.0 * std::sqrt(2.0) * *middle);
-}
 
 // Bytes per item of the arrays that are held while a cut is under way.
 constexpr std::size_t kPerTet =
@@ -63,11 +48,20 @@ std::uint64_t expected_memory_bytes(std::size_t vertices, std::size_t tets, Volu
          static_cast<std::size_t>(frames) * 24 * vertices + per_viscous_tet * tets;
 }
 
-std::uint64_t expected_memory_by_points_bytes(std::uint64_t by_tets_bytes, const TetMesh& mesh, double length_mm,
-                                              double depth_mm, const CutSettings& cut) {
-  const double reach_mm = cut.kernel_radius_mm + kEdgesBeyondKernel * median_edge_mm(mesh);
-  const double points = length_mm * 2.0 * reach_mm * (depth_mm + reach_mm) / std::pow(PointLattice::kSpacingMm, 3);
-  return static_cast<std::uint64_t>(kModelsByPoints * static_cast<double>(by_tets_bytes) + kPerPoint * points);
+std::uint64_t expected_point_memory_bytes(std::uint64_t model_bytes, std::vector<double> volumes_mm3, double length_mm,
+                                          double depth_mm, const CutSettings& cut) {
+  if (volumes_mm3.empty()) return 0;
+  const double body_mm3 = std::accumulate(volumes_mm3.begin(), volumes_mm3.end(), 0.0);
+  // A graded mesh has more fine tets than coarse ones: near the path, tets are like the median.
+  const auto median = volumes_mm3.begin() + static_cast<std::ptrdiff_t>(volumes_mm3.size() / 2);
+  std::nth_element(volumes_mm3.begin(), median, volumes_mm3.end());
+  const double edge_mm = std::cbrt(6.0 * std::sqrt(2.0) * *median);  // of a regular tet
+  const double reach_mm = cut.kernel_radius_mm + kEdgesBeyondKernel * edge_mm;
+  const double touched_mm3 = std::min(body_mm3, length_mm * 2.0 * reach_mm * (depth_mm + reach_mm));
+  // Tets with fewer than four nodes have four points of their own beside the nodes.
+  const double node_mm3 = std::pow(PointLattice::kSpacingMm, 3);
+  const double points = touched_mm3 * (1.0 / node_mm3 + (*median < 4.0 * node_mm3 ? 4.0 / *median : 0.0));
+  return static_cast<std::uint64_t>(kModelsOfSplitMesh * static_cast<double>(model_bytes) + kPerPoint * points);
 }
 
 }  // namespace incise

@@ -181,7 +181,9 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
         measures.body.boundary = manifoldness_of(measures.body.surface.triangles);
       },
       [&] { measures.depth = depth_reached(kerf, path, settings); },
-      [&] { measures.drag = tissue_drag(model, lattice, stretched.positions, path, settings, state); },
+      [&] {
+        measures.drag = tissue_drag(model, lattice ? &*lattice : nullptr, stretched.positions, path, settings, state);
+      },
       // Bridges too narrow to count for the mid-line do not hold the plug either.
       [&] {
         if (parted) return measure_final_edges(kerf, *parted, path, result);

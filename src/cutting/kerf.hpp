@@ -1,7 +1,5 @@
 #pragma once
 
-#include "point_lattice.hpp"
-
 #include <incise/cutting/incision.hpp>
 #include <incise/geometry/kerf_contours.hpp>
 
@@ -9,6 +7,8 @@
 #include <optional>
 
 namespace incise {
+
+class PointLattice;
 
 /// Thickness of a layer: about two tets, so that a single tet does not decide whether the layer is cut.
 inline constexpr double kLayerThicknessMm = 1.0;
@@ -33,9 +33,8 @@ void measure_kerf(const TissueModel& model, const TissueState& stretched, const 
                                  std::span<const std::uint8_t> is_live);
 [[nodiscard]] KerfLayer kerf_layer(const KerfInput& kerf, const ToolPath& path, double depth_mm);
 [[nodiscard]] DepthReached depth_reached(const KerfInput& kerf, const ToolPath& path, const IncisionSettings& settings);
-/// @param lattice  the points of a cut by points on the whole mesh; absent: of a cut by another rule
-[[nodiscard]] std::optional<TissueDrag> tissue_drag(const TissueModel& model,
-                                                    const std::optional<PointLattice>& lattice,
+/// @param lattice  the points of a cut by points on the whole mesh; null: of a cut by another rule
+[[nodiscard]] std::optional<TissueDrag> tissue_drag(const TissueModel& model, const PointLattice* lattice,
                                                     std::span<const Vec3> stretched, const ToolPath& path,
                                                     const IncisionSettings& settings, const CutState& state);
 /// @throws InvalidArgument for a tumour surface that does not enclose a volume.

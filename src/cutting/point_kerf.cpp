@@ -3,6 +3,7 @@
 #include "dose_field.hpp"
 #include "tet_clip.hpp"
 
+#include <incise/core/error.hpp>
 #include <incise/geometry/iso_surface.hpp>
 
 #include <algorithm>
@@ -48,12 +49,11 @@ PointKerf::Corner PointKerf::corner(const PointLattice::Node& node) const {
   const auto found = points_at_.find(node);
   if (found == points_at_.end()) return {0.0, Vec3::Zero(), false};
   const std::size_t point = found->second;
-  return {dose(node), lattice_.position(point, positions_) - lattice_.position(point, model_.mesh.vertices), true};
+  return {dose_of(point), lattice_.position(point, positions_) - lattice_.position(point, model_.mesh.vertices), true};
 }
 
-double PointKerf::dose(const PointLattice::Node& node) const {
-  const auto found = points_at_.find(node);
-  return found == points_at_.end() ? 0.0 : std::min(DoseField::kMostDose, points_.dose[found->second]);
+double PointKerf::dose_of(std::size_t point) const {
+  return std::min(DoseField::kMostDose, points_.dose[point]);
 }
 
 PointKerf::Cell PointKerf::cell(const PointLattice::Node& low) const {
@@ -87,7 +87,10 @@ std::vector<std::array<Vec3, 4>> PointKerf::tets() const {
   std::size_t count = 0;
   for (const PointLattice::Node& low : cells) {
     std::array<bool, 8> is_in;
-    for (std::size_t c = 0; c < 8; ++c) is_in[c] = dose(PointLattice::corner_of(low, c)) >= 1.0;
+    for (std::size_t c = 0; c < 8; ++c) {
+      const auto found = points_at_.find(PointLattice::corner_of(low, c));
+      is_in[c] = found != points_at_.end() && dose_of(found->second) >= 1.0;
+    }
     for (const auto& tet : kKuhn)
       count += kParts[static_cast<std::size_t>(std::ranges::count_if(tet, [&](std::size_t c) { return is_in[c]; }))];
   }
@@ -98,6 +101,7 @@ std::vector<std::array<Vec3, 4>> PointKerf::tets() const {
     for (const auto& [a, b, c, d] : kKuhn)
       add_part({at[a], at[b], at[c], at[d]}, {doses[a], doses[b], doses[c], doses[d]}, result);
   }
+  INCISE_ASSERT(result.size() == count);
   return result;
 }
 

@@ -29,7 +29,7 @@ class PointKerf {
     bool is_known;
   };
   [[nodiscard]] Corner corner(const PointLattice::Node& node) const;
-  [[nodiscard]] double dose(const PointLattice::Node& node) const;
+  [[nodiscard]] double dose_of(std::size_t point) const;
   struct Cell {
     std::array<double, 8> doses;
     std::array<Vec3, 8> at;

@@ -1,4 +1,5 @@
 #include "kerf.hpp"
+#include "point_lattice.hpp"
 
 #include <algorithm>
 #include <map>
@@ -69,11 +70,10 @@ struct StepSum {
 };
 
 /// Sums over the tissue that was cut in each step, by the step's number.
-std::map<int, StepSum> sums_of(const TissueModel& model, const std::optional<PointLattice>& lattice,
-                               std::span<const Vec3> stretched, const IncisionSettings& settings,
-                               const CutState& state) {
+std::map<int, StepSum> sums_of(const TissueModel& model, const PointLattice* lattice, std::span<const Vec3> stretched,
+                               const IncisionSettings& settings, const CutState& state) {
   std::map<int, StepSum> sums;
-  if (lattice) {
+  if (lattice != nullptr) {
     for (std::size_t i = 0; i < lattice->size(); ++i) {
       const int number = state.points.parted_step[i];
       if (number < 0) continue;
@@ -98,7 +98,7 @@ std::map<int, StepSum> sums_of(const TissueModel& model, const std::optional<Poi
 
 }  // namespace
 
-std::optional<TissueDrag> tissue_drag(const TissueModel& model, const std::optional<PointLattice>& lattice,
+std::optional<TissueDrag> tissue_drag(const TissueModel& model, const PointLattice* lattice,
                                       std::span<const Vec3> stretched, const ToolPath& path,
                                       const IncisionSettings& settings, const CutState& state) {
   const Course course(path, settings);

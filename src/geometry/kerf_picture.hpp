@@ -30,7 +30,7 @@ struct KerfPicture {
 /// Returns the removed tets in view coordinates, mm, each computed when it is visited: there may be a million. Keeps
 /// references to both arguments. A visit throws InvalidArgument for a corner that is not finite.
 [[nodiscard]] inline auto tets_in_view(const KerfInput& input, const ViewFrame& view) {
-  return input.removed_tets | std::views::transform([&](const std::array<Vec3, 4>& tet) {
+  return input.removed_tets | std::views::transform([&input, &view](const std::array<Vec3, 4>& tet) {
            std::array<Vec3, 4> seen;
            for (std::size_t c = 0; c < 4; ++c) {
              INCISE_REQUIRE(tet[c].allFinite(), fmt::format("removed tet {} has a corner that is not finite",

@@ -303,34 +303,55 @@ class Runner {
     sources_ = {};  // they may be large
     require_memory(mesh);
     study_.model = std::make_shared<TissueModel>(tissue_of(settings_, std::move(mesh)));
+    require_memory_of_points(*study_.model);
     if (options_.until >= Stage::Simulate) require_no_locking(*study_.model);
     return true;
   }
 
-  /// About: the path itself is planned later, on the stretched tissue.
-  [[nodiscard]] double planned_length_mm() const {
-    if (given_path_) return length_mm(entry_contour(*given_path_));
-    if (line_) return length_mm(*line_);
-    return tumor_edge_ ? length_mm(*tumor_edge_) + 2.0 * units::kPi * settings_.plan.lateral_margin_mm : 0.0;
+  [[nodiscard]] std::uint64_t memory_of(const TetMesh& mesh, int frames) const {
+    return expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume, frames,
+                                 viscous_terms(settings_.material));
   }
 
   /// Reports the memory that the rest needs, and refuses the run if less is available.
   void require_memory(const TetMesh& mesh) {
-    std::uint64_t needed = expected_memory_bytes(mesh.vertices.size(), mesh.tets.size(), settings_.material.volume,
-                                                 settings_.frames, viscous_terms(settings_.material));
-    if (settings_.cut.rule == CutRule::Lattice && options_.until >= Stage::Simulate)
-      needed =
-          expected_memory_by_points_bytes(needed, mesh, planned_length_mm(), settings_.plan.depth_mm, settings_.cut);
+    const std::uint64_t needed = memory_of(mesh, settings_.frames);
     const std::optional<std::uint64_t> held = held_memory_bytes();
     monitor_.message(Severity::Notice,
                      fmt::format("tissue: {} tets, {} vertices; stretching and cutting it takes about {:.0f} MB{}",
                                  mesh.tets.size(), mesh.vertices.size(), megabytes(needed),
                                  held ? fmt::format(" beyond the {:.0f} MB in use", megabytes(*held)) : ""));
+    refuse_without(needed, mesh.tets.size());
+  }
+
+  /// Does the same for what a cut by points needs besides.
+  void require_memory_of_points(const TissueModel& model) {
+    if (settings_.cut.rule != CutRule::Lattice || options_.until < Stage::Simulate || goes_without_simulation()) return;
+    const std::uint64_t needed = expected_point_memory_bytes(memory_of(model.mesh, 0), model.volumes_mm3,
+                                                             planned_length_mm(), planned_depth_mm(), settings_.cut);
+    monitor_.message(Severity::Notice, fmt::format("cut by points: takes about {:.0f} MB more", megabytes(needed)));
+    refuse_without(memory_of(model.mesh, settings_.frames) + needed, model.mesh.tets.size());
+  }
+
+  void refuse_without(std::uint64_t needed, std::size_t tets) const {
     const std::optional<std::uint64_t> available = available_memory_bytes();
     if (!available || needed <= *available) return;
     throw DataError("this machine", "memory", fmt::format("{:.0f} MB available", megabytes(*available)),
-                    fmt::format("about {:.0f} MB for {} tets", megabytes(needed), mesh.tets.size()),
+                    fmt::format("about {:.0f} MB for {} tets", megabytes(needed), tets),
                     "A coarser mesh needs less: meshing.fine_mm, meshing.coarse_mm, meshing.tets");
+  }
+
+  /// Returns the approximate length of the path, which is planned later, on the stretched tissue.
+  [[nodiscard]] double planned_length_mm() const {
+    if (given_path_) return length_mm(entry_contour(*given_path_));
+    if (settings_.plan.kind == PlanKind::Line) return line_ ? length_mm(*line_) : 0.0;
+    return tumor_edge_ ? length_mm(*tumor_edge_) + 2.0 * units::kPi * settings_.plan.lateral_margin_mm : 0.0;
+  }
+  [[nodiscard]] double planned_depth_mm() const {
+    if (!given_path_) return settings_.plan.depth_mm;
+    double deepest = 0.0;
+    for (const Waypoint& waypoint : given_path_->waypoints) deepest = std::max(deepest, waypoint.depth_mm);
+    return deepest;
   }
 
   /// The mesher reports impossible lengths or counts as a broken precondition; here they came from the case.

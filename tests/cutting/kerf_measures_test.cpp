@@ -157,7 +157,7 @@ TissueDrag drag_of_one(const ToolPath& path, double time_s, const Vec3& u, Remov
   for (const VertexId v : block().mesh.tets[500]) place += 0.25 * vertex(block().mesh.vertices, v);
   CutState state;
   state.record.removals.push_back({TetId(500), 7, time_s, cause, place, block().volumes_mm3[500]});
-  return tissue_drag(block(), {}, block().mesh.vertices, path, coarse_settings(), state).value_or(TissueDrag{});
+  return tissue_drag(block(), nullptr, block().mesh.vertices, path, coarse_settings(), state).value_or(TissueDrag{});
 }
 
 TEST(TissueDrag, OfAnOpenCutIsAheadAndToTheLeft) {

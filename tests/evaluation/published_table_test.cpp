@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace incise {
@@ -341,6 +342,27 @@ TEST(Audit, RefusesSettingsAndNumbersThatAreNone) {
   PrintedGroup broken = group("1.0", "1.0", "2.0");
   broken.mean.value = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(static_cast<void>(rules_of(broken)), InvalidArgument);
+}
+
+TEST(Audit, IsToldInLines) {
+  const AuditedRow impossible{.name = "A",
+                              .findings = {{.rule = AuditRule::SdTooLarge, .group = "", .printed = 9.0, .bound = 5.0}},
+                              .not_checkable = {{.rule = AuditRule::MeanNotOnGrain, .group = "", .needs = "n"}}};
+  const AuditedRow possible{.name = "B",
+                            .findings = {},
+                            .not_checkable = {{.rule = AuditRule::MeanNotOnGrain, .group = "", .needs = "n"},
+                                              {.rule = AuditRule::MeanNotOnGrain, .group = "part", .needs = "n"}}};
+  const Audit found{.rows = {impossible, possible},
+                    .impossible_rows = 1,
+                    .baseline_mm = BaselineRange{.low_mm = 1.9, .high_mm = 2.1},
+                    .rows_on_baseline = 2,
+                    .scored_rows = 3};
+  EXPECT_EQ(to_text(found), "A" + std::string(32, ' ') +
+                                "sd 9 is more than mean and max allow, 5\n"
+                                "not checkable in 2 of 2 rows: mean_not_on_grain (needs n)\n"
+                                "1 of 2 rows impossible\n"
+                                "score baseline 1.900 to 2.100 mm explains 2 of 3 rows\n");
+  EXPECT_THAT(findings_by_rule(found), ElementsAre(std::pair{std::string("sd_too_large"), std::size_t{1}}));
 }
 
 }  // namespace

@@ -254,6 +254,14 @@ TEST_F(RunStudy, StopsAfterTheStageThatWasAskedFor) {
   EXPECT_NEAR(study.stretched->max_displacement_mm, 5.0, 0.5);
 }
 
+/// Photographs of cuts along the planned path, all 0.8 mm too near.
+Case case_by_photographs() {
+  Case settings = coarse_case();
+  settings.compensation.method = CompensationMethod::Profile;
+  settings.compensation.photographed_mm = {-0.8};
+  return settings;
+}
+
 /// What counts towards RLIMIT_DATA already: libraries reserve buffers at start.
 rlim_t data_bytes_in_use() {
   std::ifstream status("/proc/self/status");
@@ -281,6 +289,33 @@ TEST_F(RunStudy, AMeshThatNeedsMoreMemoryThanThereIsIsRefusedBeforeItIsStretched
   EXPECT_TRUE(block_.kept.bytes.empty());
 }
 
+TEST_F(RunStudy, ACutByPointsThatNeedsMoreMemoryThanThereIsIsRefusedBeforeTheStretch) {
+  rlimit old{};
+  ASSERT_EQ(getrlimit(RLIMIT_DATA, &old), 0);
+  Case settings = coarse_case();
+  settings.cut.rule = CutRule::Lattice;
+  Workers workers(1);
+  const auto said_until = [&](Stage until, const Case& of_case) {
+    rlimit tight = old;
+    tight.rlim_cur = data_bytes_in_use() + 150'000'000;  // for the stretch, not for the points besides
+    EXPECT_EQ(setrlimit(RLIMIT_DATA, &tight), 0);
+    std::string said;
+    try {
+      static_cast<void>(run_study(of_case, block_, block_.cache, {.until = until}, workers, silent_));
+    } catch (const DataError& error) {
+      said = error.what();
+    }
+    EXPECT_EQ(setrlimit(RLIMIT_DATA, &old), 0);
+    return said;
+  };
+  EXPECT_THAT(said_until(Stage::Simulate, settings), HasSubstr("this machine: memory: found "));
+  EXPECT_TRUE(block_.kept.bytes.empty()) << "nothing was stretched";
+  EXPECT_EQ(said_until(Stage::Stretch, settings), "");
+  Case by_photographs = case_by_photographs();
+  by_photographs.cut.rule = CutRule::Lattice;
+  EXPECT_EQ(said_until(Stage::Compensate, by_photographs), "") << "no cut is simulated";
+}
+
 TEST(DefaultConstraints, ClampTheBackPullTheTipAndSupportTheUnderside) {
   const TetMesh tongue = make_block({50, 100, 30}, {5, 10, 3});
   const std::vector<Constraint> constraints = default_constraints(tongue);
@@ -294,14 +329,6 @@ TEST(DefaultConstraints, AreRefusedForABodyThatTheirLengthsWereNotMadeFor) {
   EXPECT_THAT(
       [&] { static_cast<void>(default_constraints(small)); },
       ::testing::ThrowsMessage<CaseError>(::testing::AllOf(HasSubstr("specimen.constraints"), HasSubstr("9 mm long"))));
-}
-
-/// Photographs of cuts along the planned path, all 0.8 mm too near.
-Case case_by_photographs() {
-  Case settings = coarse_case();
-  settings.compensation.method = CompensationMethod::Profile;
-  settings.compensation.photographed_mm = {-0.8};
-  return settings;
 }
 
 TEST_F(RunStudy, ByAProfileMovesThePathWithoutAnySimulatedCutUntilItIsVerified) {

@@ -22,8 +22,8 @@ class Workers {
   [[nodiscard]] int thread_count() const;
 
   /// Calls body(chunk, begin, end) once for each chunk of at most `chunk_size` consecutive items of [0, count) and
-  /// returns when all are done. Rethrows an exception of a body; if there are several, the one of the lowest chunk.
-  /// After it, chunks below that one are done, and those above it may be.
+  /// returns when all are done. If a body throws, chunks above it that have not begun are left out, and the exception
+  /// of the lowest chunk that failed is rethrown; all chunks below that one are done then.
   /// @throws InvalidArgument for a chunk size of 0, or 2^31 chunks or more.
   void for_chunks(std::size_t count, std::size_t chunk_size,
                   const std::function<void(std::size_t chunk, std::size_t begin, std::size_t end)>& body);
