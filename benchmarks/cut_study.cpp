@@ -7,25 +7,33 @@
 // mesh:  edge lengths 1.0, 0.8, 0.6, 0.5 mm: with drag, without, and in tissue that cannot move.
 // law:   the cut by points (docs/decisions/0010-cutting-law.md): [--moduli 6,12,70] kPa, [--edges 1.0,0.8,0.6] mm, of
 //        each size [--meshes 2], whose edges differ by half a percent, of specimens [--seeds 1], in steps of
-//        [--steps 0.26] mm.
+//        [--steps 0.26] mm; [--radius 1.6] mm, [--hold 16] 1/mm² and [--dose-length 3] mm of the tool; in tissue of
+//        [--poisson 0.45] and [--volume per_tet|averaged], or [--tissue frozen], which cannot move; along a path of
+//        [--waypoints 48]. With [--case FILE], the specimen of that case, made from its CT, alone or with --seeds:
+//        its region, threshold, constraints, stretch, tumour's edge and plan count, the rest is as above.
 // table: the paper's Table I: 25 pairs of speed and dullness; [--rule tets|lattice|paper] [--count keep|reset]
 //        [--specimens 2].
 
 #include "cost_table.hpp"
 #include "support/phantom_inputs.hpp"
+#include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/cutting/incision.hpp>
 #include <incise/report/line_plot.hpp>
+#include <incise/storage/run_folder.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,11 +46,25 @@ struct Options {
   CutRule rule = CutRule::Tets;  // of the table
   ContactCount count = ContactCount::Keep;  // of the table by the paper's rule
   std::uint64_t specimens = 2;   // of the table
-  std::vector<double> moduli_kpa{6.0, 12.0, 70.0}, edges_mm{1.0, 0.8, 0.6}, seeds{1.0}, steps_mm{0.26};  // of the law
+  std::vector<double> moduli_kpa{6.0, 12.0, 70.0}, edges_mm{1.0, 0.8, 0.6}, seeds, steps_mm{0.26};  // of the law
   int meshes = 2;
+  CutSettings tool;                         // radius, hold and dose length of the law
+  Material tissue{.poissons_ratio = 0.45};  // of the law
+  bool is_frozen = false;                   // the tissue of the law
+  std::optional<int> waypoints;             // of the law
+  std::string case_file;                    // whose specimen is cut by the law; empty: virtual specimens
   std::string csv;
   std::string figure;
 };
+
+/// One number, 0 or more.
+double number_in(std::string_view option, const char* text) {
+  char* end = nullptr;
+  const double number = std::strtod(text, &end);
+  INCISE_REQUIRE(end != text && *end == '\0' && number >= 0.0 && std::isfinite(number),
+                 fmt::format("expected {} with a number, 0 or more, found {}", option, text));
+  return number;
+}
 
 Options parse(int argc, char** argv) {
   Options options;
@@ -85,6 +107,27 @@ Options parse(int argc, char** argv) {
     } else if (options.study == "law" && name == "--meshes") {
       options.meshes = std::atoi(value);
       INCISE_REQUIRE(options.meshes > 0, fmt::format("expected --meshes 1 or more, found {}", value));
+    } else if (options.study == "law" && name == "--radius") {
+      options.tool.kernel_radius_mm = number_in(name, value);
+    } else if (options.study == "law" && name == "--hold") {
+      options.tool.hold_per_mm2 = number_in(name, value);
+    } else if (options.study == "law" && name == "--dose-length") {
+      options.tool.dose_length_mm = number_in(name, value);
+    } else if (options.study == "law" && name == "--poisson") {
+      options.tissue.poissons_ratio = number_in(name, value);
+    } else if (options.study == "law" && name == "--volume") {
+      const std::optional<VolumeTreatment> volume = value_of<VolumeTreatment>(value);
+      INCISE_REQUIRE(volume.has_value(),
+                     fmt::format("expected --volume {}, found {}", choices(names_of(VolumeTreatment{})), value));
+      options.tissue.volume = *volume;
+    } else if (options.study == "law" && name == "--tissue") {
+      options.is_frozen = std::string_view(value) == "frozen";
+      INCISE_REQUIRE(options.is_frozen || std::string_view(value) == "drag",
+                     fmt::format("expected --tissue drag or frozen, found {}", value));
+    } else if (options.study == "law" && name == "--waypoints") {
+      options.waypoints = static_cast<int>(number_in(name, value));
+    } else if (options.study == "law" && name == "--case") {
+      options.case_file = value;
     } else if (name == "--threads") {
       options.threads = std::atoi(value);
     } else if (name == "--csv") {
@@ -94,10 +137,12 @@ Options parse(int argc, char** argv) {
     } else {
       throw InvalidArgument(fmt::format(
           "expected --threads, --csv, --figure, with table --rule, --count, --specimens, with law --moduli, "
-          "--edges, --meshes, --seeds, --steps; found {}",
+          "--edges, --meshes, --seeds, --steps, --radius, --hold, --dose-length, --poisson, --volume, --tissue, "
+          "--waypoints, --case; found {}",
           name));
     }
   }
+  if (options.seeds.empty() && options.case_file.empty()) options.seeds = {1.0};
   INCISE_REQUIRE(!is_counted || options.rule == CutRule::Paper, "expected --count with --rule paper alone");
   return options;
 }
@@ -110,18 +155,25 @@ struct Body {
   Study study;
 };
 
-Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& meshing, Workers& workers,
-               const Material& material = {}) {
-  Body body{std::move(name), meshing.fine_mm, {}, {}};
-  body.settings.is_virtual = true;
-  body.settings.meshing = meshing;
-  body.settings.material = material;
-  body.settings.frames = 0;
-  testing::PhantomInputs inputs(phantom);
-  Cache cache;
+Body make_body(Inputs& inputs, std::string name, Case settings, Cache& cache, Workers& workers) {
+  settings.frames = 0;
+  Body body{std::move(name), settings.meshing.fine_mm, std::move(settings), {}};
   Monitor silent;
   body.study = run_study(body.settings, inputs, cache, {.until = Stage::Plan}, workers, silent);
-  fmt::print(stderr, "{}: {} tets\n", body.name, body.study.model->mesh.tets.size());
+  fmt::print(
+      stderr, "{}: {} tets{}\n", body.name, body.study.model->mesh.tets.size(),
+      body.study.plan ? "" : fmt::format(": left out, its stretch: {}", to_string(body.study.stretched->outcome)));
+  return body;
+}
+
+Body make_body(const Phantom& phantom, std::string name, const MeshingChoice& meshing, Workers& workers) {
+  Case settings;
+  settings.is_virtual = true;
+  settings.meshing = meshing;
+  testing::PhantomInputs inputs(phantom);
+  Cache cache;
+  Body body = make_body(inputs, std::move(name), std::move(settings), cache, workers);
+  INCISE_REQUIRE(body.study.plan.has_value(), "expected a specimen that can be stretched");
   return body;
 }
 
@@ -212,8 +264,7 @@ void add_point(LinePlot& plot, const std::string& name, double x, const Done& do
   if (!done.error_mm) return;
   auto series = std::find_if(plot.series.begin(), plot.series.end(), [&name](const LineSeries& s) { return s.name == name; });
   if (series == plot.series.end()) series = plot.series.insert(plot.series.end(), LineSeries{name, {}, {}, false});
-  series->x.push_back(x);
-  series->y.push_back(done.error_mm->mean);
+  series->add(x, done.error_mm->mean);
 }
 
 Result study_steps(Workers& workers) {
@@ -260,38 +311,102 @@ Result study_meshes(Workers& workers) {
   return result;
 }
 
-/// Whether a cut by points depends on its mesh.
+/// The CT and the tumour's edge of a case, read once: several workers may ask for them at a time.
+class ScanInputs final : public Inputs {
+ public:
+  ScanInputs(RunFolder& folder, Monitor& monitor) : ct_(folder.read_ct(monitor)), edge_(folder.read_tumor_edge()) {}
+  CtVolume read_ct(Monitor&) override { return ct_; }
+  std::optional<Contour> read_tumor_edge() override { return edge_; }
+
+ private:
+  CtVolume ct_;
+  std::optional<Contour> edge_;
+};
+
+/// @throws InvalidArgument for a case that is more than a CT and a ring about a tumour's edge.
+CaseFile scan_case(const std::string& name) {
+  CaseFile file = read_case(name);
+  const CaseInputs& inputs = file.inputs;
+  const bool is_scan = !inputs.ct_volume.empty() && !inputs.tumor_contour.empty() && inputs.ct_labels.empty() &&
+                       inputs.specimen_mesh.empty() && inputs.elasticity_map.empty() && inputs.tool_path.empty() &&
+                       file.settings.plan.kind == PlanKind::Ring && !file.settings.variation.tumor_modulus_kpa;
+  INCISE_REQUIRE(is_scan,
+                 fmt::format("expected the case of a CT and a ring about a tumour's edge, without labels, mesh, "
+                             "elasticity map, path or tumour's modulus, in {}",
+                             name));
+  return file;
+}
+
+/// Whether a cut by points depends on its mesh. Meshes are cut side by side; moduli and steps of each follow one after
+/// the other and share what does not depend on them.
 Result study_law(Workers& workers, const Options& options) {
   Monitor silent;
-  std::vector<Body> bodies;
-  for (const double seed : options.seeds) {
-    PhantomSettings specimen{.seed = static_cast<std::uint64_t>(seed)};
-    const Phantom phantom = make_phantom(specimen, silent);
-    for (const double modulus_kpa : options.moduli_kpa) {
-      for (const double edge : options.edges_mm) {
-        for (int mesh = 0; mesh < options.meshes; ++mesh) {
-          MeshingChoice meshing{.fine_mm = edge * (1.0 + 0.005 * mesh)};
-          const Material material{.youngs_modulus_kpa = modulus_kpa, .poissons_ratio = 0.45};
-          bodies.push_back(make_body(phantom, fmt::format("seed {} of {} kPa", specimen.seed, modulus_kpa), meshing,
-                                     workers, material));
-        }
-      }
-    }
+  struct Specimen {
+    std::string name;
+    Case settings;
+    std::unique_ptr<Inputs> inputs;
+  };
+  const testing::TemporaryFolder folder;
+  std::vector<Phantom> phantoms;
+  std::vector<Specimen> specimens;
+  if (!options.case_file.empty()) {
+    RunFolder run(scan_case(options.case_file), folder / "run", RunContext{});
+    const CaseFile& file = run.case_file();
+    specimens.push_back(
+        {file.folder.lexically_normal().filename().string(), file.settings, std::make_unique<ScanInputs>(run, silent)});
   }
-  std::vector<Job> jobs;
-  for (const Body& body : bodies) {
-    for (const double step_mm : options.steps_mm) {
-      jobs.push_back({&body, Tissue::Held, {}});
-      jobs.back().cut.rule = CutRule::Lattice;
-      jobs.back().cut.dullness = 5.4;
-      jobs.back().cut.advance_per_step_mm = step_mm;
-    }
+  for (const double seed : options.seeds)
+    phantoms.push_back(make_phantom({.seed = static_cast<std::uint64_t>(seed)}, silent));
+  for (std::size_t i = 0; i < phantoms.size(); ++i) {
+    specimens.push_back(
+        {fmt::format("seed {}", options.seeds[i]), {}, std::make_unique<testing::PhantomInputs>(phantoms[i])});
+    specimens.back().settings.is_virtual = true;
   }
-  Result result{carry_out(jobs, workers), {"Simulated: error of the mid-line against the mesh, cut by points", "edge length in the band, mm",
-                                           "mean signed error, mm", true, false, {}}};
-  for (std::size_t i = 0; i < jobs.size(); ++i)
-    add_point(result.plot, fmt::format("{}, {} mm a step", jobs[i].body->name, jobs[i].cut.advance_per_step_mm),
-              jobs[i].body->edge_mm.value(), result.done[i]);
+  const std::size_t edges = options.edges_mm.size(), meshes = static_cast<std::size_t>(options.meshes);
+  const std::size_t cuts = options.moduli_kpa.size() * options.steps_mm.size();  // of a mesh
+  std::vector<Done> done(specimens.size() * edges * meshes * cuts);
+  std::vector<std::string> names(done.size());
+  std::vector<double> edge_of(done.size());
+  std::mutex printing;
+  fmt::print("{}", kHeader);
+  workers.for_each(done.size() / cuts, 1, [&](std::size_t item) {
+    Specimen& specimen = specimens[item / (edges * meshes)];
+    const double edge = options.edges_mm[item / meshes % edges];
+    Cache cache;
+    Workers alone(1);
+    for (std::size_t cut = 0; cut < cuts; ++cut) {
+      const double modulus_kpa = options.moduli_kpa[cut / options.steps_mm.size()];
+      Case settings = specimen.settings;
+      settings.meshing = {.fine_mm = edge * (1.0 + 0.005 * static_cast<double>(item % meshes))};
+      settings.material = options.tissue;
+      settings.plan.waypoints = options.waypoints.value_or(settings.plan.waypoints);
+      settings.material.youngs_modulus_kpa = modulus_kpa;
+      const Body body =
+          make_body(*specimen.inputs, fmt::format("{} of {} kPa", specimen.name, modulus_kpa), settings, cache, alone);
+      if (!body.study.plan) continue;
+      Job job{&body, options.is_frozen ? Tissue::Frozen : Tissue::Held, options.tool};
+      job.cut.rule = CutRule::Lattice;
+      job.cut.dullness = 5.4;
+      job.cut.advance_per_step_mm = options.steps_mm[cut % options.steps_mm.size()];
+      const SimulatedCut simulated = carry_out(job);
+      const std::size_t i = item * cuts + cut;
+      done[i] = {row_of(job, simulated), simulated.centerline.signed_error_mm};
+      names[i] = specimen.name;  // one series of marks for all moduli
+      if (options.steps_mm.size() > 1) names[i] += fmt::format(", {} mm a step", job.cut.advance_per_step_mm);
+      edge_of[i] = *body.edge_mm;
+      const std::lock_guard lock(printing);
+      fmt::print("{}", done[i].row);
+      std::fflush(stdout);
+    }
+  });
+  Result result{std::move(done),
+                {"Simulated: error of the mid-line against the mesh, cut by points",
+                 "edge length in the band, mm",
+                 "mean signed error, mm",
+                 true,
+                 false,
+                 {}}};
+  for (std::size_t i = 0; i < result.done.size(); ++i) add_point(result.plot, names[i], edge_of[i], result.done[i]);
   return result;
 }
 
@@ -332,7 +447,18 @@ int run(const Options& options) {
                         : options.study == "mesh" ? study_meshes(workers)
                         : options.study == "law"  ? study_law(workers, options)
                                                   : study_table(workers, options);
-  std::string table = origin_line("simulations of virtual specimens");
+  std::string note = "simulations of virtual specimens";
+  if (options.study == "law") {
+    const CutSettings& tool = options.tool;
+    note = fmt::format("simulations of {}; R {} mm, dose length {} mm, hold {} /mm2; Poisson's ratio {}, volume {}",
+                       options.case_file.empty() ? "virtual specimens"
+                       : options.seeds.empty()   ? "the specimen of " + options.case_file
+                                                 : "virtual specimens and that of " + options.case_file,
+                       tool.kernel_radius_mm, tool.dose_length_mm, tool.hold_per_mm2, options.tissue.poissons_ratio,
+                       to_string(options.tissue.volume));
+    if (options.waypoints) note += fmt::format("; {} waypoints", *options.waypoints);
+  }
+  std::string table = origin_line(note);
   table += kHeader;
   for (const Done& done : result.done) table += done.row;
   write_text(options.csv, table);

@@ -56,6 +56,13 @@ TEST(PointLattice, StandsForTheVolumeOfEachTetWithNodesThatLieInIt) {
   }
 }
 
+/// Half the width of the kerf in tissue that cannot move: at a distance y beside the way, the dose is
+/// (ℓ / (v d τ0)) (1 − y²/R²)^(5/2).
+double half_kerf_mm(const CutSettings& settings) {
+  const double on_the_way = settings.dose_length_mm / (settings.speed_mm_s * settings.dwell_s());
+  return settings.kernel_radius_mm * std::sqrt(1.0 - std::pow(on_the_way, -0.4));
+}
+
 /// A straight pass along y at x = 6 through a block, deep enough that the tip's end does not matter half-way down.
 class StraightPass : public ::testing::Test {
  protected:
@@ -75,12 +82,7 @@ class StraightPass : public ::testing::Test {
     }
   }
 
-  /// Of the kerf in tissue that cannot move: at a distance y beside the way, the dose is
-  /// (ℓ / (v d τ0)) (1 − y²/R²)^(5/2).
-  [[nodiscard]] double half_width_mm() const {
-    const double on_the_way = settings_.dose_length_mm / (settings_.speed_mm_s * settings_.dwell_s());
-    return settings_.kernel_radius_mm * std::sqrt(1.0 - std::pow(on_the_way, -0.4));
-  }
+  [[nodiscard]] double half_width_mm() const { return half_kerf_mm(settings_); }
   /// Within 1 mm of a place along the pass.
   [[nodiscard]] static Box3 part_of(const TriMesh& surface, double y) {
     Box3 box;
@@ -432,12 +434,13 @@ TEST_F(RodInADisc, ItsReferenceHasTheClosedSolutionOfARigidRod) {
 }
 
 TEST_F(RodInADisc, HasTheLateralStiffnessOfTheReference) {
-  for (const int cells : {32, 40, 48})
+  for (const int cells : {24, 32, 48})
     EXPECT_NEAR(excess_stiffness(cells, CutSettings().hold_per_mm2), 0.0, 0.03) << cells;
 }
 
 TEST_F(RodInADisc, ComesNearItWithTheSquareOfTheEdge) {
-  const double coarse = excess_stiffness(16, 100.0), fine = excess_stiffness(32, 100.0);
+  const double hold_per_mm2 = CutSettings().hold_per_mm2;
+  const double coarse = excess_stiffness(16, hold_per_mm2), fine = excess_stiffness(32, hold_per_mm2);
   EXPECT_GT(fine, 0.0);
   EXPECT_LT(coarse, 0.1) << "0.8 mm";
   EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.3);
@@ -583,16 +586,17 @@ TEST_P(CutInTwo, IsDrawnAsTwoBodiesWithTheKerfBetweenThem) {
   const PointLattice lattice = lattice_of(model_, state_.points);
   for (const auto& [a, b, c, d] : PointKerf(model_, lattice, state_.points, model_.mesh.vertices).tets())
     kerf += std::abs(signed_volume(a, b, c, d));
-  // Halves of edges of 2 mm hardly show a kerf of 1.4 mm.
+  // Halves of edges of 2 mm hardly show a kerf of 2 mm.
   EXPECT_NEAR(gone, kerf, (std::get<0>(GetParam()) == 6 ? 0.15 : 0.06) * kerf);
   std::size_t walls = 0;
+  const double a_third_of_a_cell = 12.0 / std::get<0>(GetParam()) / 3.0;
   for (const BoundaryFace& face : boundary_faces(mesh, is_left)) {
     int f = 0;
     while (face_of(mesh.tets[face.tet.index()], f) != face.corners) ++f;
     if ((divided.skin_faces[face.tet.index()] >> f & 1U) != 0) continue;
     ++walls;
     for (const VertexId v : face.corners)
-      ASSERT_NEAR(vertex(before, v).x(), 6.3, 0.7 + 6.0 / std::get<0>(GetParam())) << "open within the tissue";
+      ASSERT_NEAR(vertex(before, v).x(), 6.3, half_kerf_mm(settings_) + a_third_of_a_cell) << "open within the tissue";
   }
   EXPECT_GT(walls, 50U);
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {

@@ -67,10 +67,10 @@ struct CutSettings {
   ContactCount contact_count = ContactCount::Keep;  ///< used only with CutRule::Paper
   // Only with CutRule::Lattice, in place of reach, bond stiffness and tear energy. Not calibrated
   // (docs/decisions/0010-cutting-law.md).
-  double kernel_radius_mm = 1.25;           ///< distance from its core within which the tool acts, [0.5, 5]
+  double kernel_radius_mm = 1.6;            ///< distance from its core within which the tool acts, [0.5, 5]
   double dose_length_mm = 3.0;              ///< speed · dullness · τ₀ at which a fixed point of reference tissue in the
                                             ///< tool's way just parts, [0.1, 10]
-  double hold_per_mm2 = 50.0;  ///< pull on a point per volume, offset and shear modulus, 1/mm², [0, 1e4]; 0: no drag.
+  double hold_per_mm2 = 16.0;  ///< pull on a point per volume, offset and shear modulus, 1/mm², [0, 1e4]; 0: no drag.
                                ///< The layer that moves with the tool is 1/√hold_per_mm2 thick
 
   /// Returns the contact time that removes a tet of the reference tissue at the reference energy, s.
