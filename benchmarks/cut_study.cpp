@@ -16,12 +16,13 @@
 
 #include "cost_table.hpp"
 #include "support/phantom_inputs.hpp"
-#include "support/temporary_folder.hpp"
 
 #include <incise/core/error.hpp>
 #include <incise/cutting/incision.hpp>
+#include <incise/io/contour_io.hpp>
+#include <incise/io/volume_io.hpp>
 #include <incise/report/line_plot.hpp>
-#include <incise/storage/run_folder.hpp>
+#include <incise/storage/case_file.hpp>
 
 #include <fmt/format.h>
 
@@ -30,7 +31,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -125,7 +125,10 @@ Options parse(int argc, char** argv) {
       INCISE_REQUIRE(options.is_frozen || std::string_view(value) == "drag",
                      fmt::format("expected --tissue drag or frozen, found {}", value));
     } else if (options.study == "law" && name == "--waypoints") {
-      options.waypoints = static_cast<int>(number_in(name, value));
+      const double waypoints = number_in(name, value);
+      INCISE_REQUIRE(waypoints == std::floor(waypoints) && waypoints <= 2000.0,
+                     fmt::format("expected --waypoints 8 to 2000, found {}", value));
+      options.waypoints = static_cast<int>(waypoints);
     } else if (options.study == "law" && name == "--case") {
       options.case_file = value;
     } else if (name == "--threads") {
@@ -311,21 +314,26 @@ Result study_meshes(Workers& workers) {
   return result;
 }
 
-/// The CT and the tumour's edge of a case, read once: several workers may ask for them at a time.
-class ScanInputs final : public Inputs {
+/// A specimen of the law, made from a CT: several workers may ask for CT and edge at a time.
+class ScannedSpecimen final : public Inputs {
  public:
-  ScanInputs(RunFolder& folder, Monitor& monitor) : ct_(folder.read_ct(monitor)), edge_(folder.read_tumor_edge()) {}
+  ScannedSpecimen(std::string name, Case settings, CtVolume ct, Contour edge)
+      : name_(std::move(name)), settings_(std::move(settings)), ct_(std::move(ct)), edge_(std::move(edge)) {}
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const Case& settings() const { return settings_; }
   CtVolume read_ct(Monitor&) override { return ct_; }
   std::optional<Contour> read_tumor_edge() override { return edge_; }
 
  private:
+  std::string name_;
+  Case settings_;
   CtVolume ct_;
-  std::optional<Contour> edge_;
+  Contour edge_;
 };
 
 /// @throws InvalidArgument for a case that is more than a CT and a ring about a tumour's edge.
-CaseFile scan_case(const std::string& name) {
-  CaseFile file = read_case(name);
+ScannedSpecimen specimen_of_case(const std::string& name) {
+  const CaseFile file = read_case(name);
   const CaseInputs& inputs = file.inputs;
   const bool is_scan = !inputs.ct_volume.empty() && !inputs.tumor_contour.empty() && inputs.ct_labels.empty() &&
                        inputs.specimen_mesh.empty() && inputs.elasticity_map.empty() && inputs.tool_path.empty() &&
@@ -334,34 +342,29 @@ CaseFile scan_case(const std::string& name) {
                  fmt::format("expected the case of a CT and a ring about a tumour's edge, without labels, mesh, "
                              "elasticity map, path or tumour's modulus, in {}",
                              name));
-  return file;
+  Monitor silent;
+  return {file.folder.lexically_normal().filename().string(), file.settings,
+          read_ct(inputs.ct_volume, file.ct_reading, silent).volume, read_contour(inputs.tumor_contour, true)};
+}
+
+std::vector<ScannedSpecimen> specimens_of(const Options& options) {
+  std::vector<ScannedSpecimen> specimens;
+  if (!options.case_file.empty()) specimens.push_back(specimen_of_case(options.case_file));
+  for (const double seed : options.seeds) {
+    Monitor silent;
+    Phantom phantom = make_phantom({.seed = static_cast<std::uint64_t>(seed)}, silent);
+    Case settings;
+    settings.is_virtual = true;
+    specimens.emplace_back(fmt::format("seed {}", seed), settings, std::move(phantom.ct),
+                           std::move(phantom.tumor_edge));
+  }
+  return specimens;
 }
 
 /// Whether a cut by points depends on its mesh. Meshes are cut side by side; moduli and steps of each follow one after
 /// the other and share what does not depend on them.
 Result study_law(Workers& workers, const Options& options) {
-  Monitor silent;
-  struct Specimen {
-    std::string name;
-    Case settings;
-    std::unique_ptr<Inputs> inputs;
-  };
-  const testing::TemporaryFolder folder;
-  std::vector<Phantom> phantoms;
-  std::vector<Specimen> specimens;
-  if (!options.case_file.empty()) {
-    RunFolder run(scan_case(options.case_file), folder / "run", RunContext{});
-    const CaseFile& file = run.case_file();
-    specimens.push_back(
-        {file.folder.lexically_normal().filename().string(), file.settings, std::make_unique<ScanInputs>(run, silent)});
-  }
-  for (const double seed : options.seeds)
-    phantoms.push_back(make_phantom({.seed = static_cast<std::uint64_t>(seed)}, silent));
-  for (std::size_t i = 0; i < phantoms.size(); ++i) {
-    specimens.push_back(
-        {fmt::format("seed {}", options.seeds[i]), {}, std::make_unique<testing::PhantomInputs>(phantoms[i])});
-    specimens.back().settings.is_virtual = true;
-  }
+  std::vector<ScannedSpecimen> specimens = specimens_of(options);
   const std::size_t edges = options.edges_mm.size(), meshes = static_cast<std::size_t>(options.meshes);
   const std::size_t cuts = options.moduli_kpa.size() * options.steps_mm.size();  // of a mesh
   std::vector<Done> done(specimens.size() * edges * meshes * cuts);
@@ -370,19 +373,19 @@ Result study_law(Workers& workers, const Options& options) {
   std::mutex printing;
   fmt::print("{}", kHeader);
   workers.for_each(done.size() / cuts, 1, [&](std::size_t item) {
-    Specimen& specimen = specimens[item / (edges * meshes)];
+    ScannedSpecimen& specimen = specimens[item / (edges * meshes)];
     const double edge = options.edges_mm[item / meshes % edges];
     Cache cache;
     Workers alone(1);
     for (std::size_t cut = 0; cut < cuts; ++cut) {
       const double modulus_kpa = options.moduli_kpa[cut / options.steps_mm.size()];
-      Case settings = specimen.settings;
+      Case settings = specimen.settings();
       settings.meshing = {.fine_mm = edge * (1.0 + 0.005 * static_cast<double>(item % meshes))};
       settings.material = options.tissue;
       settings.plan.waypoints = options.waypoints.value_or(settings.plan.waypoints);
       settings.material.youngs_modulus_kpa = modulus_kpa;
       const Body body =
-          make_body(*specimen.inputs, fmt::format("{} of {} kPa", specimen.name, modulus_kpa), settings, cache, alone);
+          make_body(specimen, fmt::format("{} of {} kPa", specimen.name(), modulus_kpa), settings, cache, alone);
       if (!body.study.plan) continue;
       Job job{&body, options.is_frozen ? Tissue::Frozen : Tissue::Held, options.tool};
       job.cut.rule = CutRule::Lattice;
@@ -391,7 +394,7 @@ Result study_law(Workers& workers, const Options& options) {
       const SimulatedCut simulated = carry_out(job);
       const std::size_t i = item * cuts + cut;
       done[i] = {row_of(job, simulated), simulated.centerline.signed_error_mm};
-      names[i] = specimen.name;  // one series of marks for all moduli
+      names[i] = specimen.name();  // one series of marks for all moduli
       if (options.steps_mm.size() > 1) names[i] += fmt::format(", {} mm a step", job.cut.advance_per_step_mm);
       edge_of[i] = *body.edge_mm;
       const std::lock_guard lock(printing);
@@ -441,24 +444,28 @@ Result study_table(Workers& workers, const Options& options) {
   return result;
 }
 
+/// What was cut, and by what, for the CSV file.
+std::string note_of(const Options& options) {
+  if (options.study != "law") return "simulations of virtual specimens";
+  const CutSettings& tool = options.tool;
+  std::string note =
+      fmt::format("simulations of {}; R {} mm, dose length {} mm, hold {} /mm2; Poisson's ratio {}, volume {}",
+                  options.case_file.empty() ? "virtual specimens"
+                  : options.seeds.empty()   ? "the specimen of " + options.case_file
+                                            : "virtual specimens and that of " + options.case_file,
+                  tool.kernel_radius_mm, tool.dose_length_mm, tool.hold_per_mm2, options.tissue.poissons_ratio,
+                  to_string(options.tissue.volume));
+  if (options.waypoints) note += fmt::format("; {} waypoints", *options.waypoints);
+  return note;
+}
+
 int run(const Options& options) {
   Workers workers(options.threads);
   const Result result = options.study == "step"   ? study_steps(workers)
                         : options.study == "mesh" ? study_meshes(workers)
                         : options.study == "law"  ? study_law(workers, options)
                                                   : study_table(workers, options);
-  std::string note = "simulations of virtual specimens";
-  if (options.study == "law") {
-    const CutSettings& tool = options.tool;
-    note = fmt::format("simulations of {}; R {} mm, dose length {} mm, hold {} /mm2; Poisson's ratio {}, volume {}",
-                       options.case_file.empty() ? "virtual specimens"
-                       : options.seeds.empty()   ? "the specimen of " + options.case_file
-                                                 : "virtual specimens and that of " + options.case_file,
-                       tool.kernel_radius_mm, tool.dose_length_mm, tool.hold_per_mm2, options.tissue.poissons_ratio,
-                       to_string(options.tissue.volume));
-    if (options.waypoints) note += fmt::format("; {} waypoints", *options.waypoints);
-  }
-  std::string table = origin_line(note);
+  std::string table = origin_line(note_of(options));
   table += kHeader;
   for (const Done& done : result.done) table += done.row;
   write_text(options.csv, table);

@@ -53,25 +53,21 @@ template <Named E>
   return value_of<E>(name).value();
 }
 
-/// Adds an option that sets an enum by one of its names. @param value  must live as long as the verb; its present value
-/// is the default.
-template <Named E>
-CLI::Option* add_choice(CLI::App& verb, const std::string& option, E& value, const std::string& meaning) {
-  return verb
-      .add_option_function<std::string>(
-          option, [&value](const std::string& name) { value = value_named<E>(name); }, meaning)
-      ->check(name_of_any<E>())
-      ->default_str(std::string(to_string(value)));
-}
-
-/// As add_choice, of an enum that may be absent: absent is the default, and has no name.
+/// Adds an option that sets an enum by one of its names; without it, it stays absent.
+/// @param value  must live as long as the verb.
 template <Named E>
 CLI::Option* add_choice(CLI::App& verb, const std::string& option, std::optional<E>& value,
                         const std::string& meaning) {
-  return verb
-      .add_option_function<std::string>(
-          option, [&value](const std::string& name) { value = value_named<E>(name); }, meaning)
-      ->check(name_of_any<E>());
+  const auto set = [&value](const std::string& name) { value = value_named<E>(name); };
+  return verb.add_option_function<std::string>(option, set, meaning)->check(name_of_any<E>());
+}
+/// As above, of an enum whose present value is the default.
+template <Named E>
+CLI::Option* add_choice(CLI::App& verb, const std::string& option, E& value, const std::string& meaning) {
+  const auto set = [&value](const std::string& name) { value = value_named<E>(name); };
+  return verb.add_option_function<std::string>(option, set, meaning)
+      ->check(name_of_any<E>())
+      ->default_str(std::string(to_string(value)));
 }
 
 /// @throws CaseError for the first violation ("close_margin_mm: found -1, expected …"), named after its option

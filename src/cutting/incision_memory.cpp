@@ -10,7 +10,6 @@ namespace incise {
 namespace {
 
 // Of a cut by points, found by measurement.
-constexpr double kModelsOfSplitMesh = 1.0;  // its model and solver, over those of the whole mesh
 constexpr double kPerPoint = 410.0;         // bytes, most of them while the kerf is measured
 constexpr double kEdgesBeyondKernel = 0.6;  // how far tets that the kernel touches reach beyond it
 
@@ -61,7 +60,7 @@ std::uint64_t expected_point_memory_bytes(std::uint64_t model_bytes, std::vector
   // Tets with fewer than four nodes have four points of their own beside the nodes.
   const double node_mm3 = std::pow(PointLattice::kSpacingMm, 3);
   const double points = touched_mm3 * (1.0 / node_mm3 + (*median < 4.0 * node_mm3 ? 4.0 / *median : 0.0));
-  return static_cast<std::uint64_t>(kModelsOfSplitMesh * static_cast<double>(model_bytes) + kPerPoint * points);
+  return model_bytes + static_cast<std::uint64_t>(kPerPoint * points);  // the split mesh is about as large as the whole
 }
 
 }  // namespace incise

@@ -22,6 +22,11 @@ bool reset_peak() {
 
 class IncisionMemory : public testing::RingInABlock {
  protected:
+  // Some systems do not let a process begin its peak anew: there is nothing to hold the estimate against.
+  void SetUp() override {
+    if (!reset_peak()) GTEST_SKIP() << "this system does not tell the peak of a process";
+  }
+
   /// What a cut of a block of 32 x 32 x 8 mm was expected to take, over what it took.
   [[nodiscard]] double expected_over_measured(const std::array<int, 3>& cells, VolumeTreatment volume) const {
     TetMesh mesh = make_block({32, 32, 8}, cells);
@@ -40,17 +45,14 @@ class IncisionMemory : public testing::RingInABlock {
 };
 
 TEST_F(IncisionMemory, OfTheDemosSizeIsWithinThirtyPercentOfWhatWasExpected) {
-  if (!reset_peak()) GTEST_SKIP() << "this system does not tell the peak of a process";
   EXPECT_NEAR(expected_over_measured({32, 32, 7}, VolumeTreatment::PerTet), 1.0, 0.3);
 }
 
 TEST_F(IncisionMemory, WithAveragedVolumeIsWithinThirtyPercentOfWhatWasExpected) {
-  if (!reset_peak()) GTEST_SKIP() << "this system does not tell the peak of a process";
   EXPECT_NEAR(expected_over_measured({22, 22, 6}, VolumeTreatment::Averaged), 1.0, 0.3);
 }
 
 TEST_F(IncisionMemory, OfACutByPointsIsWithinThirtyPercentOfWhatWasExpected) {
-  if (!reset_peak()) GTEST_SKIP() << "this system does not tell the peak of a process";
   settings_.cut.rule = CutRule::Lattice;
   settings_.cut.dullness = 5.4;
   Workers workers(1);
